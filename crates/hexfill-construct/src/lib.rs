@@ -1,0 +1,1 @@
+//! A hex mesh for any quad surface that can have one

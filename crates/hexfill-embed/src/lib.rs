@@ -1,0 +1,1 @@
+//! Coordinates for hex meshes: start, untangle, optimise

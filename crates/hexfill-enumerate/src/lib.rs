@@ -1,0 +1,1 @@
+//! Every hex mesh with n cubes, without isomorphic copies (BruteBuilder)

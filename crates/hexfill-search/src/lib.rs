@@ -1,0 +1,1 @@
+//! Cavities, flips and the atlas of smallest known fillings
