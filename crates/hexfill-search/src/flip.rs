@@ -231,9 +231,10 @@ pub fn place(cavity: &Cavity, degrees: &[u8; MAX_VERTICES], flip: Flip) -> Optio
 /// Whether the hex meets everything behind the cavity properly; `marked` is the table of used pairs of the cavity.
 #[inline]
 pub fn is_legal(placement: &Placement, marked: &Pairs) -> bool {
-    KINDS[placement.flip.kind as usize].must_be_free.iter().all(|&[i, j]| {
-        marked[usize::from(placement.corners[i])] >> placement.corners[j] & 1 == 0
-    })
+    KINDS[placement.flip.kind as usize]
+        .must_be_free
+        .iter()
+        .all(|&[i, j]| marked[usize::from(placement.corners[i])] >> placement.corners[j] & 1 == 0)
 }
 
 /// All candidate flips of a cavity, each once, in ascending order of kind and dart; `max_quads` bounds the result's size.

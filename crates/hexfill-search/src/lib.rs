@@ -1,7 +1,10 @@
 //! Cavities, flips, the atlas of smallest known fillings, complete search and simplification.
 
+mod canonical;
 mod cavity;
 mod flip;
+mod grow;
 
 pub use cavity::{Cavity, MAX_QUADS, MAX_VERTICES, Pairs};
 pub use flip::{Flip, FlipKind, Placement, apply, is_legal, legal_flips, place};
+pub use grow::{GrowOptions, Growth, LevelReport, MAX_CAP};

@@ -1,0 +1,436 @@
+//! Growth of the atlas: dynamic programming over cavities, level by level.
+//!
+//! Outward from one cube, a shellable ball grows by flips on its outside. What may be added next depends only on the
+//! *state*: the class of the boundary and which of its vertex pairs are blocked. Level L holds states reached with L
+//! hexes. A state is dominated, and dropped, if its class was reached with no more hexes and a subset of its blocked
+//! pairs. Per class at most `width` states are kept, but one with fewer blocked pairs than all of them always enters:
+//! without that rule the growth dies out early, the blocked pairs matter. With unlimited width every Pareto state is
+//! kept and "nothing below H hexes with cavities of at most C quads" is a theorem.
+//!
+//! Determinism: the children of a level are gathered in sets whose content does not depend on their order of arrival,
+//! then numbered by class hash. Any number of threads gives the same atlas.
+
+use crate::canonical::{Canonical, MAX_CODE, code_len, decode};
+use crate::cavity::{Cavity, MAX_VERTICES, Pairs};
+use crate::flip::{Flip, apply, candidates, is_legal, place};
+use hexfill_mesh::{Context, StopReason};
+use rayon::prelude::*;
+use rustc_hash::FxHashMap;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use xxhash_rust::xxh3::xxh3_128;
+
+/// Largest cap on the number of quads of a growing ball.
+pub const MAX_CAP: usize = 26;
+const PAIR_WORDS: usize = (MAX_CAP + 2) * (MAX_CAP + 1) / 2_usize.pow(1) / 64 + 1;
+const SHARDS: usize = 64;
+
+/// Name of a class in tables: xxh3-128 of its canonical code.
+pub(crate) type ClassHash = u128;
+
+pub(crate) fn class_hash(code: &[u8]) -> ClassHash {
+    xxh3_128(code)
+}
+
+/// Blocked pairs of a canonical cavity, packed: pair (a, b), a < b, is bit `b (b - 1) / 2 + a`.
+pub(crate) type PackedPairs = [u64; PAIR_WORDS];
+
+fn pack(pairs: &Pairs, n_vertices: usize) -> PackedPairs {
+    let mut packed = [0; PAIR_WORDS];
+    for b in 1..n_vertices {
+        let row = pairs[b] & ((1 << b) - 1);
+        let (word, bit) = ((b * (b - 1) / 2) / 64, (b * (b - 1) / 2) % 64);
+        packed[word] |= row << bit;
+        if bit + b > 64 {
+            packed[word + 1] |= row >> (64 - bit);
+        }
+    }
+    packed
+}
+
+fn unpack(packed: &PackedPairs, n_vertices: usize) -> Pairs {
+    let mut pairs = [0; MAX_VERTICES];
+    for b in 1..n_vertices {
+        let (word, bit) = ((b * (b - 1) / 2) / 64, (b * (b - 1) / 2) % 64);
+        let mut row = packed[word] >> bit;
+        if bit + b > 64 {
+            row |= packed[word + 1] << (64 - bit);
+        }
+        row &= (1 << b) - 1;
+        pairs[b] |= row;
+        while row != 0 {
+            pairs[row.trailing_zeros() as usize] |= 1 << b;
+            row &= row - 1;
+        }
+    }
+    pairs
+}
+
+fn is_subset(a: &PackedPairs, b: &PackedPairs) -> bool {
+    a.iter().zip(b).all(|(a, b)| a & !b == 0)
+}
+
+/// How far and how densely to grow.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct GrowOptions {
+    /// Most quads a ball's boundary may have on the way (at most [`MAX_CAP`]).
+    pub cap: usize,
+    /// How many states to keep per class; `u32::MAX` keeps every Pareto state.
+    pub width: u32,
+}
+
+impl Default for GrowOptions {
+    fn default() -> Self {
+        Self { cap: 24, width: 1 }
+    }
+}
+
+/// A kept state: how it was reached.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct State {
+    /// The state it grew from (itself for the cube).
+    pub parent: u32,
+    /// The flip on the parent's canonical cavity.
+    pub flip: Flip,
+    /// Number of blocked pairs.
+    pub n_blocked: u16,
+    /// The state of the same class kept before this one, or `u32::MAX`.
+    pub previous: u32,
+}
+
+/// A state whose flips have not been tried yet.
+#[derive(Clone, Copy)]
+struct FrontierState {
+    id: u32,
+    n_quads: u8,
+    code: [u8; code_len(MAX_CAP)],
+    blocked: PackedPairs,
+}
+
+/// A child waiting for the end of the level. The derived order decides which children of a class are kept.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Candidate {
+    n_blocked: u16,
+    blocked: PackedPairs,
+    parent: u32,
+    flip: Flip,
+}
+
+struct PendingClass {
+    n_quads: u8,
+    code: [u8; code_len(MAX_CAP)],
+    /// The smallest candidates, ascending, at most `width`, distinct in `blocked`.
+    candidates: Vec<Candidate>,
+}
+
+/// What a level brought.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LevelReport {
+    /// Number of hexes of the balls of this level.
+    pub level: u32,
+    /// Legal flips tried to get there.
+    pub children: u64,
+    /// States kept on this level.
+    pub kept: u64,
+    /// Classes reached so far.
+    pub classes: u64,
+    /// States kept so far.
+    pub states: u64,
+    /// States left out on this level to stay within the memory limit.
+    pub thinned: u64,
+    /// Why the level was not finished; its states are then discarded.
+    pub stopped: Option<StopReason>,
+}
+
+/// The growing atlas.
+pub struct Growth {
+    pub(crate) options: GrowOptions,
+    pub(crate) states: Vec<State>,
+    blocked: Vec<PackedPairs>,
+    /// Per shard: the newest state of each class.
+    newest: Vec<FxHashMap<ClassHash, u32>>,
+    /// First state of each level, level 1 first.
+    pub(crate) level_starts: Vec<u32>,
+    frontier: Vec<FrontierState>,
+}
+
+fn shard_of(class: ClassHash) -> usize {
+    (class >> 122) as usize % SHARDS
+}
+
+impl Growth {
+    /// The atlas of one cube.
+    pub fn new(options: GrowOptions) -> Self {
+        let options = GrowOptions { cap: options.cap.clamp(6, MAX_CAP), width: options.width.max(1) };
+        let cube = Cavity::cube();
+        let mut canonical = Canonical::new();
+        canonical.compute(&cube);
+        let blocked = pack(&canonical.blocked_image(&cube).0, cube.n_vertices());
+        let mut code = [0; code_len(MAX_CAP)];
+        code[..canonical.code().len()].copy_from_slice(canonical.code());
+        let mut newest = vec![FxHashMap::default(); SHARDS];
+        let class = class_hash(canonical.code());
+        newest[shard_of(class)].insert(class, 0);
+        let flip = Flip { kind: crate::flip::FlipKind::OneToFive, dart: 0 };
+        Self {
+            options,
+            states: vec![State { parent: 0, flip, n_blocked: cube.n_blocked() as u16, previous: u32::MAX }],
+            blocked: vec![blocked],
+            newest,
+            level_starts: vec![0],
+            frontier: vec![FrontierState { id: 0, n_quads: 6, code, blocked }],
+        }
+    }
+
+    /// Number of hexes of the balls on the newest level.
+    pub fn level(&self) -> u32 {
+        self.level_starts.len() as u32
+    }
+
+    /// Whether no state is left to grow from.
+    pub fn is_exhausted(&self) -> bool {
+        self.frontier.is_empty()
+    }
+
+    /// Number of classes reached.
+    pub fn n_classes(&self) -> u64 {
+        self.newest.iter().map(|s| s.len() as u64).sum()
+    }
+
+    /// Number of states kept.
+    pub fn n_states(&self) -> u64 {
+        self.states.len() as u64
+    }
+
+    /// Bytes held, roughly: states, pairs, tables and frontier.
+    pub fn memory(&self) -> u64 {
+        let per_state = size_of::<State>() + size_of::<PackedPairs>();
+        let tables: usize = self.newest.iter().map(|s| s.capacity() * (size_of::<(ClassHash, u32)>() + 1)).sum();
+        (self.states.capacity() * per_state + tables + self.frontier.capacity() * size_of::<FrontierState>()) as u64
+    }
+
+    /// Number of hexes of a state.
+    pub(crate) fn hexes_of(&self, state: u32) -> u32 {
+        self.level_starts.partition_point(|&first| first <= state) as u32
+    }
+
+    /// The states of a class, newest first.
+    pub(crate) fn states_of(&self, class: ClassHash) -> impl Iterator<Item = u32> + '_ {
+        let mut at = self.newest[shard_of(class)].get(&class).copied();
+        std::iter::from_fn(move || {
+            let now = at?;
+            let previous = self.states[now as usize].previous;
+            at = (previous != u32::MAX).then_some(previous);
+            Some(now)
+        })
+    }
+
+    /// Every class with its newest state, in no particular order.
+    pub(crate) fn classes(&self) -> impl Iterator<Item = (ClassHash, u32)> + '_ {
+        self.newest.iter().flatten().map(|(&class, &state)| (class, state))
+    }
+
+    /// Grows by one level.
+    pub fn grow(&mut self, ctx: &Context<'_>) -> LevelReport {
+        let pending: Vec<Mutex<FxHashMap<ClassHash, PendingClass>>> =
+            (0..SHARDS).map(|_| Mutex::new(FxHashMap::default())).collect();
+        let stop = AtomicBool::new(false);
+        let children = AtomicU64::new(0);
+        let done = AtomicU64::new(0);
+        let total = self.frontier.len() as u64;
+        let level = self.level() + 1;
+        self.frontier.par_chunks(256).for_each_init(Canonical::new, |canonical, chunk| {
+            if stop.load(Ordering::Relaxed) {
+                return;
+            }
+            if ctx.stop().is_some() {
+                stop.store(true, Ordering::Relaxed);
+                return;
+            }
+            let mut tried = 0;
+            for state in chunk {
+                tried += self.expand(state, canonical, &pending);
+            }
+            children.fetch_add(tried, Ordering::Relaxed);
+            let so_far = done.fetch_add(chunk.len() as u64, Ordering::Relaxed) + chunk.len() as u64;
+            if so_far.is_multiple_of(256) {
+                ctx.report("atlas level", so_far, Some(total), || {
+                    format!("level {level}: {} classes, {} states so far", self.n_classes(), self.n_states())
+                });
+            }
+        });
+        let mut report = LevelReport {
+            level,
+            children: children.into_inner(),
+            kept: 0,
+            classes: self.n_classes(),
+            states: self.n_states(),
+            thinned: 0,
+            stopped: None,
+        };
+        if stop.into_inner() {
+            report.stopped = ctx.stop().or(Some(StopReason::Cancelled));
+            return report;
+        }
+        let pending = pending.into_iter().map(|m| m.into_inner().expect("no thread panicked")).collect();
+        report.thinned = self.settle(pending, ctx.memory_limit);
+        report.kept = self.frontier.len() as u64;
+        report.classes = self.n_classes();
+        report.states = self.n_states();
+        report
+    }
+
+    /// Tries every flip of a state; hands the children that may be kept to `pending`. Returns how many were legal.
+    fn expand(
+        &self,
+        state: &FrontierState,
+        canonical: &mut Canonical,
+        pending: &[Mutex<FxHashMap<ClassHash, PendingClass>>],
+    ) -> u64 {
+        let mut cavity = decode(&state.code[..code_len(usize::from(state.n_quads))]).expect("a kept code is a sphere");
+        cavity.blocked = unpack(&state.blocked, cavity.n_vertices());
+        let (marked, degrees) = (cavity.marked(), cavity.degrees());
+        let mut legal = 0;
+        for flip in candidates(&cavity, self.options.cap) {
+            let Some(placement) = place(&cavity, &degrees, flip) else { continue };
+            if !is_legal(&placement, &marked) {
+                continue;
+            }
+            legal += 1;
+            let child = apply(&cavity, &placement).0;
+            canonical.compute(&child);
+            let class = class_hash(canonical.code());
+            let n_blocked = child.n_blocked() as u16;
+            let shard = shard_of(class);
+            // Cheap refusals first: the front of earlier levels is complete and only read here.
+            let mut kept = 0;
+            let mut fewest = u16::MAX;
+            for old in self.states_of(class) {
+                kept += 1;
+                fewest = fewest.min(self.states[old as usize].n_blocked);
+            }
+            if n_blocked >= fewest && kept >= self.options.width {
+                continue;
+            }
+            let blocked = pack(&canonical.blocked_image(&child).0, child.n_vertices());
+            if kept > 0 && self.states_of(class).any(|old| is_subset(&self.blocked[old as usize], &blocked)) {
+                continue;
+            }
+            let candidate = Candidate { n_blocked, blocked, parent: state.id, flip };
+            let mut shard = pending[shard].lock().expect("no thread panicked");
+            let slot = shard.entry(class).or_insert_with(|| {
+                let mut code = [0; code_len(MAX_CAP)];
+                code[..canonical.code().len()].copy_from_slice(canonical.code());
+                PendingClass { n_quads: child.n_quads, code, candidates: Vec::new() }
+            });
+            slot.offer(candidate, self.options.width);
+        }
+        legal
+    }
+
+    /// Ends a level: accepts the pending states class by class, in the order of their hashes.
+    fn settle(&mut self, pending: Vec<FxHashMap<ClassHash, PendingClass>>, memory_limit: Option<u64>) -> u64 {
+        let mut classes: Vec<(ClassHash, PendingClass)> = pending.into_iter().flatten().collect();
+        classes.par_sort_unstable_by_key(|(class, _)| *class);
+        let mut thinned = 0;
+        if let Some(limit) = memory_limit {
+            let per_class = size_of::<State>() + size_of::<PackedPairs>() + 2 * size_of::<(ClassHash, u32)>();
+            let coming = |n: usize| self.memory() + (n * (per_class + size_of::<FrontierState>())) as u64;
+            let mut cap = MAX_CAP;
+            while coming(classes.len()) > limit && cap > 6 {
+                // Thin the largest classes first: the records known pass through them least.
+                let before = classes.len();
+                classes.retain(|(_, p)| usize::from(p.n_quads) < cap);
+                thinned += (before - classes.len()) as u64;
+                cap -= 2;
+            }
+        }
+        self.frontier.clear();
+        self.level_starts.push(self.states.len() as u32);
+        for (class, pending) in classes {
+            let start = self.states.len();
+            for candidate in pending.candidates {
+                // Ascending in the number of blocked pairs: only an earlier one can dominate.
+                if self.blocked[start..].iter().any(|b| is_subset(b, &candidate.blocked)) {
+                    continue;
+                }
+                let Ok(id) = u32::try_from(self.states.len()) else { return thinned };
+                let previous = self.newest[shard_of(class)].insert(class, id).unwrap_or(u32::MAX);
+                self.states.push(State {
+                    parent: candidate.parent,
+                    flip: candidate.flip,
+                    n_blocked: candidate.n_blocked,
+                    previous,
+                });
+                self.blocked.push(candidate.blocked);
+                self.frontier.push(FrontierState {
+                    id,
+                    n_quads: pending.n_quads,
+                    code: pending.code,
+                    blocked: candidate.blocked,
+                });
+            }
+        }
+        thinned
+    }
+}
+
+impl PendingClass {
+    /// Keeps the `width` smallest candidates. Which ones those are does not depend on the order of the offers.
+    fn offer(&mut self, candidate: Candidate, width: u32) {
+        let same = self.candidates.iter().position(|c| c.blocked == candidate.blocked);
+        match same {
+            Some(i) if self.candidates[i] <= candidate => return,
+            Some(i) => {
+                self.candidates.remove(i);
+            }
+            None => {}
+        }
+        let at = self.candidates.partition_point(|c| *c < candidate);
+        if (at as u64) < u64::from(width) {
+            self.candidates.insert(at, candidate);
+            self.candidates.truncate(width as usize);
+        }
+    }
+}
+
+const _: () = assert!(code_len(MAX_CAP) <= MAX_CODE);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn packed_pairs_come_back() {
+        let mut pairs = [0; MAX_VERTICES];
+        let mut state = 1u64;
+        for b in 1..MAX_CAP + 2 {
+            for a in 0..b {
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+                if state >> 40 & 1 == 1 {
+                    pairs[a] |= 1 << b;
+                    pairs[b] |= 1 << a;
+                }
+            }
+        }
+        assert_eq!(unpack(&pack(&pairs, MAX_CAP + 2), MAX_CAP + 2), pairs);
+    }
+
+    #[test]
+    fn the_first_levels_are_the_same_for_any_number_of_threads() {
+        let run = |threads: usize, width: u32| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| {
+                let mut growth = Growth::new(GrowOptions { cap: 20, width });
+                let reports: Vec<LevelReport> = (0..7).map(|_| growth.grow(&Context::default())).collect();
+                let trail: Vec<(u32, Flip)> = growth.states.iter().map(|s| (s.parent, s.flip)).collect();
+                (reports, trail)
+            })
+        };
+        for width in [1, 4, u32::MAX] {
+            let one = run(1, width);
+            assert_eq!(one, run(2, width));
+            assert_eq!(one, run(5, width));
+        }
+    }
+}
