@@ -10,6 +10,7 @@
 //! Determinism: the children of a level are gathered in sets whose content does not depend on their order of arrival,
 //! then numbered by class hash. Any number of threads gives the same atlas.
 
+use crate::ball::Ball;
 use crate::canonical::{Canonical, MAX_CODE, code_len, decode};
 use crate::cavity::{Cavity, MAX_VERTICES, Pairs};
 use crate::flip::{Flip, apply, candidates, is_legal, place};
@@ -228,6 +229,27 @@ impl Growth {
     /// Every class with its newest state, in no particular order.
     pub(crate) fn classes(&self) -> impl Iterator<Item = (ClassHash, u32)> + '_ {
         self.newest.iter().flatten().map(|(&class, &state)| (class, state))
+    }
+
+    /// The flips that lead from the cube to a state.
+    pub(crate) fn flips_to(&self, mut state: u32) -> Vec<Flip> {
+        let mut flips = Vec::new();
+        while state != 0 {
+            let at = self.states[state as usize];
+            flips.push(at.flip);
+            state = at.parent;
+        }
+        flips.reverse();
+        flips
+    }
+
+    /// The smallest balls known whose boundary is isomorphic to the cavity's, fewest hexes first.
+    pub fn balls_for(&self, cavity: &Cavity) -> impl Iterator<Item = Ball> + '_ {
+        let mut canonical = Canonical::new();
+        canonical.compute(cavity);
+        let mut states: Vec<u32> = self.states_of(class_hash(canonical.code())).collect();
+        states.reverse();
+        states.into_iter().map(|s| Ball::replay(self.flips_to(s)).expect("kept flips are legal"))
     }
 
     /// Grows by one level.

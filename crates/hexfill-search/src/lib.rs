@@ -1,10 +1,12 @@
 //! Cavities, flips, the atlas of smallest known fillings, complete search and simplification.
 
+mod ball;
 mod canonical;
 mod cavity;
 mod flip;
 mod grow;
 
+pub use ball::Ball;
 pub use cavity::{Cavity, MAX_QUADS, MAX_VERTICES, Pairs};
 pub use flip::{Flip, FlipKind, Placement, apply, is_legal, legal_flips, place};
 pub use grow::{GrowOptions, Growth, LevelReport, MAX_CAP};
