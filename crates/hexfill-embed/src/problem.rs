@@ -1,0 +1,135 @@
+//! [`Problem`]: hexes with their free and fixed vertices, and the incidence the solvers walk.
+//!
+//! Invariant: `slot[v]` is the variable of a free vertex and [`FIXED`] otherwise; `corners` lists, for each
+//! variable, the places `8 * hex + corner` where its vertex occurs, ascending. Sums over a vertex are taken in
+//! that order, whatever the number of threads, so results are the same to the last bit.
+
+use crate::vector::Vector;
+use rayon::prelude::*;
+
+/// Marks a fixed vertex.
+pub(crate) const FIXED: u32 = u32::MAX;
+
+/// From this many hexes (or variables) on, loops are spread over threads.
+const PARALLEL: usize = 4096;
+
+/// Hexes and variables. See the module page.
+#[derive(Clone, Debug)]
+pub(crate) struct Problem {
+    pub(crate) hexes: Vec<[u32; 8]>,
+    pub(crate) n_vertices: usize,
+    /// Per vertex: its variable, or [`FIXED`].
+    pub(crate) slot: Vec<u32>,
+    /// Per variable: its vertex.
+    pub(crate) free: Vec<u32>,
+    corner_start: Vec<u32>,
+    corners: Vec<u32>,
+}
+
+impl Problem {
+    /// The problem in which the vertices marked in `fixed`, and those no hex uses, do not move.
+    pub(crate) fn new(n_vertices: usize, hexes: Vec<[u32; 8]>, fixed: &[bool]) -> Self {
+        let mut used = vec![false; n_vertices];
+        for &v in hexes.iter().flatten() {
+            used[v as usize] = true;
+        }
+        let free: Vec<u32> = (0..n_vertices as u32).filter(|&v| used[v as usize] && !fixed[v as usize]).collect();
+        let mut slot = vec![FIXED; n_vertices];
+        for (s, &v) in free.iter().enumerate() {
+            slot[v as usize] = s as u32;
+        }
+        let mut corner_start = vec![0u32; free.len() + 1];
+        let slots = || hexes.iter().flatten().map(|&v| slot[v as usize]);
+        for s in slots().filter(|&s| s != FIXED) {
+            corner_start[s as usize + 1] += 1;
+        }
+        for s in 0..free.len() {
+            corner_start[s + 1] += corner_start[s];
+        }
+        let mut cursor = corner_start.clone();
+        let mut corners = vec![0u32; corner_start[free.len()] as usize];
+        for (place, s) in slots().enumerate().filter(|&(_, s)| s != FIXED) {
+            corners[cursor[s as usize] as usize] = place as u32;
+            cursor[s as usize] += 1;
+        }
+        Self { hexes, n_vertices, slot, free, corner_start, corners }
+    }
+
+    /// The corners of a hex.
+    #[inline]
+    pub(crate) fn corners_of(&self, hex: usize, points: &[Vector]) -> [Vector; 8] {
+        self.hexes[hex].map(|v| points[v as usize])
+    }
+
+    /// The places `8 * hex + corner` of a variable's vertex, ascending.
+    #[inline]
+    pub(crate) fn places(&self, variable: usize) -> &[u32] {
+        &self.corners[self.corner_start[variable] as usize..self.corner_start[variable + 1] as usize]
+    }
+
+    /// Writes variables (three numbers each) into `points`.
+    pub(crate) fn scatter(&self, x: &[f64], points: &mut [Vector]) {
+        for (x, &v) in x.chunks_exact(3).zip(&self.free) {
+            points[v as usize].copy_from_slice(x);
+        }
+    }
+
+    /// The variables of `points`.
+    pub(crate) fn gather(&self, points: &[Vector]) -> Vec<f64> {
+        self.free.iter().flat_map(|&v| points[v as usize]).collect()
+    }
+
+    /// `out[h] = f(h)` for all hexes.
+    pub(crate) fn map_hexes<T: Send>(&self, out: &mut [T], f: impl Fn(usize) -> T + Sync) {
+        fill(out, f);
+    }
+
+    /// Sums, per variable, the gradients in `per_hex` at its places into `out` (three numbers a variable).
+    pub(crate) fn sum_at_variables(&self, per_hex: &[(f64, [Vector; 8])], out: &mut [f64]) {
+        let one = |s: usize, out: &mut [f64]| {
+            let mut sum = [0.0; 3];
+            for &place in self.places(s) {
+                let row = per_hex[place as usize / 8].1[place as usize % 8];
+                for k in 0..3 {
+                    sum[k] += row[k];
+                }
+            }
+            out.copy_from_slice(&sum);
+        };
+        if self.free.len() >= PARALLEL {
+            out.par_chunks_exact_mut(3).with_min_len(512).enumerate().for_each(|(s, out)| one(s, out));
+        } else {
+            out.chunks_exact_mut(3).enumerate().for_each(|(s, out)| one(s, out));
+        }
+    }
+}
+
+/// `out[i] = f(i)`, in parallel for long arrays; elementwise, so the same at any number of threads.
+pub(crate) fn fill<T: Send>(out: &mut [T], f: impl Fn(usize) -> T + Sync) {
+    if out.len() >= PARALLEL {
+        out.par_iter_mut().with_min_len(256).enumerate().for_each(|(i, o)| *o = f(i));
+    } else {
+        out.iter_mut().enumerate().for_each(|(i, o)| *o = f(i));
+    }
+}
+
+/// Scalar product in chunks of fixed length, summed in order: the same at any number of threads.
+pub(crate) fn dot_long(a: &[f64], b: &[f64]) -> f64 {
+    const CHUNK: usize = 16384;
+    let one = |(a, b): (&[f64], &[f64])| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    if a.len() > 4 * CHUNK {
+        let parts: Vec<f64> = a.par_chunks(CHUNK).zip(b.par_chunks(CHUNK)).map(one).collect();
+        parts.iter().sum()
+    } else {
+        a.chunks(CHUNK).zip(b.chunks(CHUNK)).map(one).sum()
+    }
+}
+
+/// `y += s * x`.
+pub(crate) fn add_long(y: &mut [f64], s: f64, x: &[f64]) {
+    if y.len() > 65536 {
+        y.par_iter_mut().with_min_len(8192).zip(x).for_each(|(y, x)| *y += s * x);
+    } else {
+        y.iter_mut().zip(x).for_each(|(y, x)| *y += s * x);
+    }
+}
