@@ -1,0 +1,76 @@
+//! The crate's error type.
+
+/// What can go wrong while enumerating.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum EnumerateError {
+    /// Cubes that are not a small connected hex mesh.
+    #[error("not a complex: {why}")]
+    BadComplex {
+        /// What is wrong.
+        why: String,
+    },
+    /// Parameters that do not go together.
+    #[error("{why}")]
+    BadParameters {
+        /// What is wrong, and what would be right.
+        why: String,
+    },
+    /// A text that is not a boundary key.
+    #[error("{given:?} is not a boundary key: {why} (an example of a key: 8x[8,16] 8x[16,16])")]
+    BadKey {
+        /// The text.
+        given: String,
+        /// What is wrong.
+        why: String,
+    },
+    /// A code that is not a complex.
+    #[error("{given:?} is not a code: {why}")]
+    BadCode {
+        /// The text.
+        given: String,
+        /// What is wrong.
+        why: String,
+    },
+    /// Not a mesh in the sense of the mesh crate.
+    #[error(transparent)]
+    Mesh(#[from] hexfill_mesh::HexMeshError),
+    /// A checkpoint that cannot be read or written.
+    #[error("{path}: {source}")]
+    Io {
+        /// The file.
+        path: std::path::PathBuf,
+        /// The system's reason.
+        source: std::io::Error,
+    },
+    /// A ledger whose contents cannot be trusted.
+    #[error("{path}: line {line}: {why}")]
+    BadLedger {
+        /// The file.
+        path: std::path::PathBuf,
+        /// The line, from 1.
+        line: usize,
+        /// What is wrong.
+        why: String,
+    },
+    /// A ledger for other parameters than those asked for.
+    #[error("{path} was made with other parameters: {differences}")]
+    OtherParameters {
+        /// The file.
+        path: std::path::PathBuf,
+        /// Each difference: name, value found, value expected.
+        differences: String,
+    },
+    /// Chunks that do not make a whole.
+    #[error("the chunks do not make a whole: {why}")]
+    Incomplete {
+        /// The chunks missing or overlapping.
+        why: String,
+    },
+    /// The work was stopped.
+    #[error("stopped before the end: {reason:?}")]
+    Stopped {
+        /// Why.
+        reason: hexfill_mesh::StopReason,
+    },
+}
