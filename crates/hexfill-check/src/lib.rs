@@ -1,1 +1,27 @@
-//! The independent judge of hex meshes and their boundaries
+//! The independent judge: says which rule of the validity ladder a hex mesh breaks, and on which cells.
+//!
+//! It reads raw arrays, so that bad meshes can be judged, and shares no algorithm with the crates that make meshes: from
+//! `hexfill-mesh` it takes the ids and the reference cube's tables only. Levels (see [`Level`]): L1 indices and hex shape;
+//! L2 face pairing and proper intersection; L3 manifold, oriented, boundary = input; L4 positions finite, boundary
+//! bit-identical; L5 det J > 0 certified everywhere in every hex. Time and memory are linear in the mesh.
+//!
+//! ```
+//! use hexfill_check::{judge, Judged, Level, Options};
+//! use hexfill_mesh::Context;
+//!
+//! let cube = [[0, 1, 2, 3, 4, 5, 6, 7]];
+//! let report = judge(&Judged::connectivity(8, &cube), &Options::default(), &Context::default());
+//! assert!(report.passed(Level::L3));
+//! assert_eq!(report.facts.euler, Some(1));
+//! ```
+
+mod input;
+mod judge;
+mod report;
+mod rule;
+mod topology;
+
+pub use input::{Judged, Options, Parts};
+pub use judge::judge;
+pub use report::{Ball, BoundaryPart, Facts, Failure, LevelReport, Offender, Outcome, Report, SurfaceSense};
+pub use rule::{Level, Rule, Rules};

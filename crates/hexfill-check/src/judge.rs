@@ -1,0 +1,213 @@
+//! [`judge`]: every level in turn, and the report.
+
+use crate::input::{Judged, Options, Parts};
+use crate::report::{Ball, Facts, Findings, LevelReport, Offender, Outcome, Report};
+use crate::rule::{Level, Rule, Rules};
+use crate::topology::boundary::{compare, parts};
+use crate::topology::parity::ParityForest;
+use crate::topology::shape::judge_shape;
+use crate::topology::star::{BoundaryQuad, StarJudge, StarRules, StarSums};
+use crate::topology::stars::Stars;
+use hexfill_mesh::{Context, StopReason};
+use rayon::prelude::*;
+
+/// Vertices judged as one task; fixed, so that results do not depend on the number of threads.
+const CHUNK: usize = 1 << 12;
+/// Tasks between two looks at the context.
+const BATCH: usize = 64;
+
+/// Judges `input` level by level, up to `options.up_to`, on the current rayon pool. Linear time and memory.
+///
+/// A level that fails does not hide the next ones: each is judged where the lower ones leave it a meaning (levels 2 to 5
+/// need level 1). When `ctx` says stop, the levels not finished are reported as not judged.
+pub fn judge(input: &Judged<'_>, options: &Options, ctx: &Context<'_>) -> Report {
+    let mut run = Run { input, options, ctx, findings: Findings::default(), facts: Facts::default(), done: 0 };
+    run.facts.hexes = input.hexes.len() as u64;
+    run.facts.vertices = input.n_vertices as u64;
+    let why = run.levels();
+    run.findings.forget_above(options.up_to);
+    let levels = Level::ALL
+        .into_iter()
+        .map(|level| {
+            let outcome = if run.findings.breaks_level(level) {
+                Outcome::Failed
+            } else if (level as usize) < run.done {
+                Outcome::Passed
+            } else {
+                Outcome::NotJudged(why.clone().unwrap_or_else(|| "not asked for".into()))
+            };
+            LevelReport { level, outcome }
+        })
+        .collect();
+    Report {
+        version: env!("CARGO_PKG_VERSION"),
+        rules: options.rules,
+        levels,
+        failures: run.findings.into_failures(),
+        facts: run.facts,
+    }
+}
+
+struct Run<'a> {
+    input: &'a Judged<'a>,
+    options: &'a Options,
+    ctx: &'a Context<'a>,
+    findings: Findings,
+    facts: Facts,
+    /// How many levels were judged to the end.
+    done: usize,
+}
+
+fn stopped(reason: StopReason) -> String {
+    match reason {
+        StopReason::TimeLimit => "the time limit was reached".into(),
+        StopReason::MemoryLimit => "the memory limit was reached".into(),
+        _ => "cancelled".into(),
+    }
+}
+
+impl Run<'_> {
+    /// Goes up the ladder; the reason if it ends before `options.up_to`.
+    fn levels(&mut self) -> Option<String> {
+        let (found, used) = judge_shape(self.input);
+        self.findings.append(found);
+        self.done = 1;
+        if self.findings.breaks_level(Level::L1) {
+            return Some("level 1 failed".into());
+        }
+        if self.options.up_to == Level::L1 {
+            return None;
+        }
+        let stars = Stars::new(used, self.input.hexes);
+        let forest = ParityForest::new(self.input.hexes.len());
+        let mut sums = match self.stars(&stars, &forest) {
+            Ok(sums) => sums,
+            Err(why) => return Some(why),
+        };
+        self.findings.append(std::mem::take(&mut sums.findings));
+        self.done = 2;
+        if self.options.up_to == Level::L2 {
+            return None;
+        }
+        self.level_3(&stars, &forest, sums);
+        self.done = 3;
+        None
+    }
+
+    /// Judges the star of every vertex.
+    fn stars(&mut self, stars: &Stars, forest: &ParityForest) -> Result<StarSums, String> {
+        let strict = self.options.rules == Rules::Strict;
+        let rules = StarRules { proper: strict, links: strict };
+        let tasks = stars.len().div_ceil(CHUNK);
+        let mut sums = StarSums::default();
+        for first in (0..tasks).step_by(BATCH) {
+            if let Some(reason) = self.ctx.stop() {
+                return Err(stopped(reason));
+            }
+            let total = Some(stars.len() as u64);
+            self.ctx.report("check stars", (first * CHUNK) as u64, total, String::new);
+            let last = (first + BATCH).min(tasks);
+            let parts: Vec<StarSums> = (first..last)
+                .into_par_iter()
+                .map_init(
+                    || StarJudge::new(self.input.hexes, forest, rules),
+                    |star, task| {
+                        for v in task * CHUNK..((task + 1) * CHUNK).min(stars.len()) {
+                            star.judge(v as u32, stars.of(v as u32));
+                        }
+                        std::mem::take(&mut star.sums)
+                    },
+                )
+                .collect();
+            for part in parts {
+                sums.findings.append(part.findings);
+                sums.used += part.used;
+                sums.on_boundary += part.on_boundary;
+                sums.edges += part.edges;
+                sums.quads += part.quads;
+                sums.boundary.extend(part.boundary);
+                sums.not_orientable.extend(part.not_orientable);
+            }
+        }
+        Ok(sums)
+    }
+
+    fn level_3(&mut self, stars: &Stars, forest: &ParityForest, sums: StarSums) {
+        let facts = &mut self.facts;
+        facts.unused_vertices = self.input.n_vertices as u64 - sums.used;
+        facts.interior_vertices = Some(sums.used - sums.on_boundary);
+        facts.edges = Some(sums.edges);
+        facts.quads = Some(sums.quads);
+        facts.boundary_quads = Some(sums.boundary.len() as u64);
+        facts.euler = Some(sums.used as i64 - sums.edges as i64 + sums.quads as i64 - self.input.hexes.len() as i64);
+        facts.boundary = parts(&sums.boundary);
+        if let Some(surface) = self.input.surface {
+            let (found, sense) = compare(&sums.boundary, surface, self.input.hexes, stars);
+            self.findings.append(found);
+            self.facts.surface_sense = sense;
+        }
+        // Hexes round a quad that is in three of them have no sides to compare.
+        if self.findings.count(Rule::QuadInThreeHexes) == 0 {
+            self.orientation(forest, &sums.not_orientable);
+        }
+        self.parts(forest, &sums.boundary);
+        self.facts.ball = Some(Ball::Unknown);
+    }
+
+    /// Names the parts that cannot be oriented, and in the others the hexes ordered against the majority.
+    fn orientation(&mut self, forest: &ParityForest, not_orientable: &[u32]) {
+        let mut crooked: Vec<u32> = not_orientable.iter().map(|&h| forest.find(h).0).collect();
+        crooked.sort_unstable();
+        crooked.dedup();
+        self.facts.orientable = Some(crooked.is_empty());
+        for &h in &crooked {
+            self.findings.add(Rule::NonOrientable, || Offender::at(&[h], &[]).note("and its part of the mesh"));
+        }
+        if self.findings.count(Rule::OrientationClash) == 0 {
+            return;
+        }
+        let n = self.input.hexes.len();
+        let mut balance = vec![0i64; n];
+        for h in 0..n as u32 {
+            let (root, opposite) = forest.find(h);
+            balance[root as usize] += if opposite { -1 } else { 1 };
+        }
+        for h in 0..n as u32 {
+            let (root, opposite) = forest.find(h);
+            // In a tie the smallest hex of the part is taken to be right.
+            let minority = opposite == (balance[root as usize] >= 0);
+            if minority && crooked.binary_search(&root).is_err() {
+                self.findings.add(Rule::HexReflected, || Offender::at(&[h], &[]));
+            }
+        }
+    }
+
+    /// Counts the parts connected through quads.
+    fn parts(&mut self, forest: &ParityForest, boundary: &[BoundaryQuad]) {
+        let n = self.input.hexes.len();
+        let mut open = vec![false; n];
+        for quad in boundary {
+            open[forest.find(quad.hex).0 as usize] = true;
+        }
+        let roots: Vec<u32> = (0..n as u32).filter(|&h| forest.find(h).0 == h).collect();
+        let closed: Vec<u32> = roots.iter().copied().filter(|&h| !open[h as usize]).collect();
+        self.facts.parts = Some(roots.len() as u64);
+        self.facts.closed_parts = Some(closed.len() as u64);
+        let boundary_parts = self.facts.boundary.as_ref().map_or(1, Vec::len);
+        let (limit, why) = match (self.options.parts, self.input.surface) {
+            (Parts::Any, _) => return,
+            (Parts::AsSurface, Some(_)) => (boundary_parts.max(1), "a further part"),
+            _ => (1, "a further part"),
+        };
+        if self.input.surface.is_some() && self.options.parts == Parts::AsSurface {
+            for &h in &closed {
+                self.findings.add(Rule::MeshDisconnected, || Offender::at(&[h], &[]).note("a part without boundary"));
+            }
+        }
+        if roots.len() > limit && self.findings.count(Rule::MeshDisconnected) == 0 {
+            for &h in &roots[limit..] {
+                self.findings.add(Rule::MeshDisconnected, || Offender::at(&[h], &[]).note(why));
+            }
+        }
+    }
+}

@@ -1,0 +1,170 @@
+//! Level 3: the boundary against the prescribed surface, and the components of the boundary with their genus.
+
+use super::parity::ParityForest;
+use super::star::BoundaryQuad;
+use super::stars::Stars;
+use crate::report::{BoundaryPart, Findings, Offender, SurfaceSense};
+use crate::rule::Rule;
+use hexfill_mesh::{HexId, cube::FACETS};
+use rayon::prelude::*;
+
+/// The four vertices in ascending order, and where the cycle goes from the smallest: next and opposite.
+fn canonical(cycle: [u32; 4]) -> ([u32; 4], u32, u32) {
+    let mut key = cycle;
+    key.sort_unstable();
+    let at = cycle.iter().position(|&v| v == key[0]).unwrap_or(0);
+    (key, cycle[(at + 1) % 4], cycle[(at + 2) % 4])
+}
+
+/// Compares the boundary with `surface` (indices in range, four distinct vertices each).
+pub(crate) fn compare(
+    boundary: &[BoundaryQuad],
+    surface: &[[u32; 4]],
+    hexes: &[[u32; 8]],
+    stars: &Stars,
+) -> (Findings, Option<SurfaceSense>) {
+    let mut given: Vec<([u32; 4], u32)> =
+        surface.par_iter().enumerate().map(|(q, &cycle)| (canonical(cycle).0, q as u32)).collect();
+    given.par_sort_unstable();
+    let mut found: Vec<([u32; 4], u32)> =
+        boundary.par_iter().enumerate().map(|(b, quad)| (canonical(quad.cycle).0, b as u32)).collect();
+    found.par_sort_unstable();
+
+    let mut findings = Findings::default();
+    let (mut missing, mut twisted, mut repeated) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut outward, mut inward) = (0u64, 0u64);
+    let mut at = 0;
+    let mut extra = |b: u32| {
+        let quad = boundary[b as usize];
+        findings.add(Rule::BoundaryQuadExtra, || Offender::at(&[quad.hex], &quad.cycle));
+    };
+    for same in given.chunk_by(|a, b| a.0 == b.0) {
+        let (key, q) = same[0];
+        repeated.extend(same[1..].iter().map(|&(_, r)| (r, q)));
+        while at < found.len() && found[at].0 < key {
+            extra(found[at].1);
+            at += 1;
+        }
+        // In a mesh that fails level 2 one vertex set may be several boundary quads, in different cyclic orders.
+        let first = at;
+        while at < found.len() && found[at].0 == key {
+            at += 1;
+        }
+        let (_, next, opposite) = canonical(surface[q as usize]);
+        if first == at {
+            missing.push(q);
+        }
+        for &(_, b) in &found[first..at] {
+            let (_, found_next, found_opposite) = canonical(boundary[b as usize].cycle);
+            if found_opposite != opposite {
+                twisted.push((q, b));
+            } else if found_next == next {
+                outward += 1;
+            } else {
+                inward += 1;
+            }
+        }
+    }
+    found[at..].iter().for_each(|&(_, b)| extra(b));
+
+    missing.sort_unstable();
+    for q in missing {
+        let quad = surface[q as usize];
+        findings.add(Rule::BoundaryQuadMissing, || {
+            let holders = holders(quad, hexes, stars);
+            let list = holders.iter().take(10).map(|&h| HexId(h).to_string()).collect::<Vec<_>>().join(" ");
+            let note = if holders.is_empty() { "not a quad of any hex".into() } else { format!("interior: in {list}") };
+            Offender::quad(q, &quad).note(note)
+        });
+    }
+    twisted.sort_unstable();
+    for (q, b) in twisted {
+        let quad = boundary[b as usize];
+        findings.add(Rule::BoundaryQuadTwisted, || Offender {
+            hexes: vec![quad.hex],
+            ..Offender::quad(q, &surface[q as usize]).note("the surface's order; the hex has another")
+        });
+    }
+    repeated.sort_unstable();
+    for (r, q) in repeated {
+        findings.add(Rule::SurfaceQuadRepeated, || Offender {
+            quads: vec![q, r],
+            vertices: surface[r as usize].to_vec(),
+            ..Offender::default()
+        });
+    }
+    let sense = match (outward, inward) {
+        (0, 0) => None,
+        (_, 0) => Some(SurfaceSense::Outward),
+        (0, _) => Some(SurfaceSense::Inward),
+        _ => Some(SurfaceSense::Mixed),
+    };
+    (findings, sense)
+}
+
+/// The hexes that have the four vertices as a facet.
+fn holders(quad: [u32; 4], hexes: &[[u32; 8]], stars: &Stars) -> Vec<u32> {
+    let has = |h: u32| FACETS.iter().any(|f| f.iter().all(|&k| quad.contains(&hexes[h as usize][k])));
+    let in_range = quad.iter().copied().min().filter(|&v| (v as usize) < stars.len());
+    in_range.map_or(Vec::new(), |v| stars.of(v).iter().map(|c| c >> 3).filter(|&h| has(h)).collect())
+}
+
+/// The components of the boundary, connected through edges, largest first. `None` if some edge is not in exactly two
+/// boundary quads. A vertex where several sheets of the boundary touch counts once for each of them.
+pub(crate) fn parts(boundary: &[BoundaryQuad]) -> Option<Vec<BoundaryPart>> {
+    let mut sides: Vec<(u64, u32)> = boundary
+        .par_iter()
+        .enumerate()
+        .flat_map_iter(|(b, quad)| {
+            (0..4).map(move |i| {
+                let (x, y) = (quad.cycle[i], quad.cycle[(i + 1) % 4]);
+                (u64::from(x.min(y)) << 32 | u64::from(x.max(y)), (4 * b + i) as u32)
+            })
+        })
+        .collect();
+    sides.par_sort_unstable();
+    let quads = ParityForest::new(boundary.len());
+    let corners = ParityForest::new(4 * boundary.len());
+    let mut crooked = Vec::new();
+    for pair in sides.chunks(2) {
+        let [(edge, one), (other, two)] = *pair else { return None };
+        if edge != other {
+            return None;
+        }
+        let start = |side: u32| boundary[side as usize / 4].cycle[side as usize % 4];
+        let next = |side: u32| side & !3 | (side + 1) & 3;
+        // Coherently oriented neighbours pass the edge in opposite directions.
+        let clash = start(one) == start(two);
+        if !quads.union(one / 4, two / 4, clash) {
+            crooked.push(one / 4);
+        }
+        let (a, b) = if clash { (two, next(two)) } else { (next(two), two) };
+        corners.union(one, a, false);
+        corners.union(next(one), b, false);
+    }
+    if sides.windows(3).any(|w| w[0].0 == w[2].0) {
+        return None;
+    }
+    // Sums by root; the roots are indices of quads.
+    let mut sums = vec![(0u64, 0i64, true); boundary.len()];
+    for b in 0..boundary.len() as u32 {
+        let sum = &mut sums[quads.find(b).0 as usize];
+        sum.0 += 1;
+        // A quad brings itself and half of its four edges: 1 - 2.
+        sum.1 -= 1;
+        for corner in 4 * b..4 * b + 4 {
+            sum.1 += i64::from(corners.find(corner).0 == corner);
+        }
+    }
+    crooked.into_iter().for_each(|b| sums[quads.find(b).0 as usize].2 = false);
+    let mut parts: Vec<BoundaryPart> = sums
+        .into_iter()
+        .filter(|s| s.0 > 0)
+        .map(|(quads, euler, orientable)| {
+            let genus = (orientable && euler <= 2 && euler % 2 == 0).then(|| ((2 - euler) / 2) as u64);
+            BoundaryPart { quads, euler, genus }
+        })
+        .collect();
+    parts.sort_unstable_by_key(|p| (std::cmp::Reverse(p.quads), p.euler));
+    Some(parts)
+}

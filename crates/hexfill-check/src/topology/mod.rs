@@ -1,0 +1,7 @@
+//! Levels 1 to 3: everything that needs no coordinates.
+
+pub(crate) mod boundary;
+pub(crate) mod parity;
+pub(crate) mod shape;
+pub(crate) mod star;
+pub(crate) mod stars;
