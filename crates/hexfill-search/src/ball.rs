@@ -85,6 +85,13 @@ impl Ball {
         Some(Self { hexes, n_vertices, boundary, boundary_vertices: ids })
     }
 
+    /// The boundary as a cavity to fill: nothing blocked.
+    pub fn boundary_only(&self) -> Cavity {
+        let mut cavity = self.boundary.clone();
+        cavity.blocked = [0; MAX_VERTICES];
+        cavity
+    }
+
     /// Number of hexes.
     pub fn n_hexes(&self) -> usize {
         self.hexes.len()

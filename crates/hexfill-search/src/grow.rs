@@ -23,7 +23,7 @@ use xxhash_rust::xxh3::xxh3_128;
 
 /// Largest cap on the number of quads of a growing ball.
 pub const MAX_CAP: usize = 26;
-const PAIR_WORDS: usize = (MAX_CAP + 2) * (MAX_CAP + 1) / 2_usize.pow(1) / 64 + 1;
+const PAIR_WORDS: usize = (MAX_CAP + 2) * (MAX_CAP + 1) / 2 / 64 + 1;
 const SHARDS: usize = 64;
 
 /// Name of a class in tables: xxh3-128 of its canonical code.
@@ -31,6 +31,13 @@ pub(crate) type ClassHash = u128;
 
 pub(crate) fn class_hash(code: &[u8]) -> ClassHash {
     xxh3_128(code)
+}
+
+/// The class of the cube.
+pub(crate) fn cube_class() -> ClassHash {
+    let mut canonical = Canonical::new();
+    canonical.compute(&Cavity::cube());
+    class_hash(canonical.code())
 }
 
 /// Blocked pairs of a canonical cavity, packed: pair (a, b), a < b, is bit `b (b - 1) / 2 + a`.
@@ -106,6 +113,14 @@ struct FrontierState {
     n_quads: u8,
     code: [u8; code_len(MAX_CAP)],
     blocked: PackedPairs,
+}
+
+impl FrontierState {
+    fn cavity(&self) -> Cavity {
+        let mut cavity = decode(&self.code[..code_len(usize::from(self.n_quads))]).expect("a kept code is a sphere");
+        cavity.blocked = unpack(&self.blocked, cavity.n_vertices());
+        cavity
+    }
 }
 
 /// A child waiting for the end of the level. The derived order decides which children of a class are kept.
@@ -252,6 +267,59 @@ impl Growth {
         states.into_iter().map(|s| Ball::replay(self.flips_to(s)).expect("kept flips are legal"))
     }
 
+    /// The options the growth was made with (clamped to their limits).
+    pub fn options(&self) -> GrowOptions {
+        self.options
+    }
+
+    /// The states of the newest level with their classes, in order.
+    pub(crate) fn newest_level(&self) -> Vec<(State, ClassHash)> {
+        self.frontier
+            .iter()
+            .map(|f| (self.states[f.id as usize], class_hash(&f.code[..code_len(usize::from(f.n_quads))])))
+            .collect()
+    }
+
+    /// Adds a level that was grown before: each state's parent (on the newest level) and flip, in order.
+    /// `None` if a flip is not legal on its parent; the growth is then unusable.
+    pub(crate) fn replay_level(&mut self, parents: &[u32], flips: &[Flip]) -> Option<()> {
+        let first = *self.level_starts.last().expect("level 1 exists");
+        let remade: Option<Vec<(ClassHash, FrontierState, u16)>> = parents
+            .par_iter()
+            .zip(flips)
+            .map_init(Canonical::new, |canonical, (&parent, &flip)| {
+                let parent = self.frontier.get(parent.checked_sub(first)? as usize)?;
+                let cavity = parent.cavity();
+                if usize::from(flip.dart) >= 4 * cavity.n_quads() {
+                    return None;
+                }
+                let placement = place(&cavity, &cavity.degrees(), flip)?;
+                let quads = cavity.n_quads() as i32 + flip.kind.gain();
+                if quads > self.options.cap as i32 || !is_legal(&placement, &cavity.marked()) {
+                    return None;
+                }
+                let child = apply(&cavity, &placement).0;
+                canonical.compute(&child);
+                let blocked = pack(&canonical.blocked_image(&child).0, child.n_vertices());
+                let mut code = [0; code_len(MAX_CAP)];
+                code[..canonical.code().len()].copy_from_slice(canonical.code());
+                let state = FrontierState { id: 0, n_quads: child.n_quads, code, blocked };
+                Some((class_hash(canonical.code()), state, child.n_blocked() as u16))
+            })
+            .collect();
+        let remade = remade?;
+        self.level_starts.push(self.states.len() as u32);
+        self.frontier.clear();
+        for ((&parent, &flip), (class, mut state, n_blocked)) in parents.iter().zip(flips).zip(remade) {
+            state.id = u32::try_from(self.states.len()).ok()?;
+            let previous = self.newest[shard_of(class)].insert(class, state.id).unwrap_or(u32::MAX);
+            self.states.push(State { parent, flip, n_blocked, previous });
+            self.blocked.push(state.blocked);
+            self.frontier.push(state);
+        }
+        Some(())
+    }
+
     /// Grows by one level.
     pub fn grow(&mut self, ctx: &Context<'_>) -> LevelReport {
         let pending: Vec<Mutex<FxHashMap<ClassHash, PendingClass>>> =
@@ -309,8 +377,7 @@ impl Growth {
         canonical: &mut Canonical,
         pending: &[Mutex<FxHashMap<ClassHash, PendingClass>>],
     ) -> u64 {
-        let mut cavity = decode(&state.code[..code_len(usize::from(state.n_quads))]).expect("a kept code is a sphere");
-        cavity.blocked = unpack(&state.blocked, cavity.n_vertices());
+        let cavity = state.cavity();
         let (marked, degrees) = (cavity.marked(), cavity.degrees());
         let mut legal = 0;
         for flip in candidates(&cavity, self.options.cap) {

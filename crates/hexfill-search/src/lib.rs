@@ -1,11 +1,15 @@
 //! Cavities, flips, the atlas of smallest known fillings, complete search and simplification.
 
+mod atlas;
+mod atlas_file;
 mod ball;
 mod canonical;
 mod cavity;
 mod flip;
 mod grow;
 
+pub use atlas::{Atlas, AtlasStats, ClassStats};
+pub use atlas_file::{AtlasError, GrowthLog};
 pub use ball::Ball;
 pub use cavity::{Cavity, MAX_QUADS, MAX_VERTICES, Pairs};
 pub use flip::{Flip, FlipKind, Placement, apply, is_legal, legal_flips, place};

@@ -1,0 +1,212 @@
+//! [`Atlas`]: boundary class -> smallest known fillings, each stored as the flips that shell it from one cube.
+//!
+//! A state costs a parent, a flip and the hash of its class. The hash only points: a filling is replayed and its
+//! boundary compared before it is handed out, so a clash of hashes costs time and never a wrong answer.
+
+use crate::ball::Ball;
+use crate::canonical::Canonical;
+use crate::cavity::Cavity;
+use crate::flip::Flip;
+use crate::grow::{Growth, class_hash};
+use std::sync::OnceLock;
+
+/// Marks a state that is kept as a step to others only.
+pub(crate) const STEP: u64 = 0;
+
+/// A class hash shortened for storage; never [`STEP`].
+pub(crate) fn short_hash(class: u128) -> u64 {
+    ((class >> 88) as u64).max(1)
+}
+
+/// An immutable table of fillings. See the module page.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Atlas {
+    /// First state of each level; level 1 is the cube.
+    pub(crate) level_starts: Vec<u32>,
+    /// Per state: the state it grew from (one level below), the flip on that state's canonical cavity.
+    pub(crate) parents: Vec<u32>,
+    pub(crate) flips: Vec<Flip>,
+    /// Per state: the short hash of its class, or [`STEP`].
+    pub(crate) hashes: Vec<u64>,
+    /// The states that are more than steps, by hash, then ascending (fewest hexes first).
+    index: Vec<u32>,
+}
+
+/// Counts of an atlas.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AtlasStats {
+    /// States in all, steps included.
+    pub states: usize,
+    /// Per number of quads: classes with a filling, and the sum of their smallest numbers of hexes.
+    pub classes: std::collections::BTreeMap<usize, ClassStats>,
+    /// Number of levels.
+    pub levels: usize,
+}
+
+/// Counts over the classes with one number of quads.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ClassStats {
+    /// How many classes have a filling.
+    pub classes: usize,
+    /// Fewest hexes of any of them.
+    pub fewest: u32,
+    /// Most hexes of a smallest filling.
+    pub most: u32,
+    /// Sum of the hexes of the smallest fillings.
+    pub hexes: u64,
+}
+
+impl Atlas {
+    pub(crate) fn from_parts(level_starts: Vec<u32>, parents: Vec<u32>, flips: Vec<Flip>, hashes: Vec<u64>) -> Self {
+        let mut index: Vec<u32> = (0..hashes.len() as u32).filter(|&s| hashes[s as usize] != STEP).collect();
+        index.sort_unstable_by_key(|&s| (hashes[s as usize], s));
+        Self { level_starts, parents, flips, hashes, index }
+    }
+
+    /// All states of a growth.
+    pub fn from_growth(growth: &Growth) -> Self {
+        let mut hashes = vec![STEP; growth.states.len()];
+        for (class, newest) in growth.classes() {
+            let mut at = newest;
+            while at != u32::MAX {
+                hashes[at as usize] = short_hash(class);
+                at = growth.states[at as usize].previous;
+            }
+        }
+        Self::from_parts(
+            growth.level_starts.clone(),
+            growth.states.iter().map(|s| s.parent).collect(),
+            growth.states.iter().map(|s| s.flip).collect(),
+            hashes,
+        )
+    }
+
+    /// The atlas compiled into the library. It was made by `hexfill atlas build` and `atlas prune`; see `record/`.
+    pub fn embedded() -> &'static Self {
+        static ATLAS: OnceLock<Atlas> = OnceLock::new();
+        ATLAS.get_or_init(|| {
+            Self::read_packed(include_bytes!("../data/default.hxatlas")).expect("the shipped atlas is intact")
+        })
+    }
+
+    /// Number of states, steps included.
+    pub fn n_states(&self) -> usize {
+        self.parents.len()
+    }
+
+    /// Number of hexes of a state.
+    pub fn hexes_of(&self, state: u32) -> u32 {
+        self.level_starts.partition_point(|&first| first <= state) as u32
+    }
+
+    /// The states whose class has this hash, fewest hexes first.
+    fn states_with(&self, hash: u64) -> &[u32] {
+        let start = self.index.partition_point(|&s| self.hashes[s as usize] < hash);
+        let len = self.index[start..].partition_point(|&s| self.hashes[s as usize] == hash);
+        &self.index[start..start + len]
+    }
+
+    /// The flips that lead from the cube to a state.
+    pub fn flips_to(&self, mut state: u32) -> Vec<Flip> {
+        let mut flips = Vec::new();
+        while state != 0 {
+            flips.push(self.flips[state as usize]);
+            state = self.parents[state as usize];
+        }
+        flips.reverse();
+        flips
+    }
+
+    /// Fewest hexes on record for a boundary with this canonical form, without replaying: a promise to be checked.
+    pub(crate) fn hexes_hint(&self, class: u128) -> Option<u32> {
+        self.states_with(short_hash(class)).first().map(|&s| self.hexes_of(s))
+    }
+
+    /// The fillings on record whose boundary is isomorphic to the cavity's, fewest hexes first; whether they fit the
+    /// cavity's blocked pairs is for [`Ball::placements`] to say.
+    pub fn balls_for<'a>(&'a self, cavity: &Cavity) -> impl Iterator<Item = Ball> + use<'a> {
+        let mut canonical = Canonical::new();
+        canonical.compute(cavity);
+        let code = canonical.code().to_vec();
+        self.states_with(short_hash(class_hash(&code))).iter().filter_map(move |&state| {
+            let ball = Ball::replay(self.flips_to(state))?;
+            let mut form = Canonical::new();
+            form.compute(&ball.boundary);
+            (form.code() == code).then_some(ball)
+        })
+    }
+
+    /// The smallest filling on record that avoids the cavity's blocked pairs, and where it goes.
+    pub fn best_fit(&self, cavity: &Cavity, max_hexes: u32) -> Option<(Ball, Vec<u8>, bool)> {
+        self.balls_for(cavity).take_while(|ball| ball.n_hexes() <= max_hexes as usize).find_map(|ball| {
+            let (map, mirrored) = ball.placements(cavity).into_iter().next()?;
+            Some((ball, map, mirrored))
+        })
+    }
+
+    /// Number of boundary quads of every state.
+    fn quads(&self) -> Vec<u8> {
+        let mut quads = vec![6u8; self.n_states()];
+        for s in 1..self.n_states() {
+            quads[s] = (i32::from(quads[self.parents[s] as usize]) + self.flips[s].kind.gain()) as u8;
+        }
+        quads
+    }
+
+    /// A smaller atlas: the states of classes for which `keep(quads, hexes)` holds, the first `width` per class, and the
+    /// steps that lead there, renumbered so that siblings stand together.
+    #[must_use]
+    pub fn pruned(&self, width: usize, keep: impl Fn(usize, u32) -> bool) -> Self {
+        let quads = self.quads();
+        let mut wanted = vec![false; self.n_states()];
+        let mut named = vec![false; self.n_states()];
+        named[0] = true;
+        for run in self.index.chunk_by(|&a, &b| self.hashes[a as usize] == self.hashes[b as usize]) {
+            for &state in run.iter().take(width) {
+                named[state as usize] |= keep(usize::from(quads[state as usize]), self.hexes_of(state));
+            }
+        }
+        for state in (0..self.n_states()).rev() {
+            wanted[state] |= named[state] || state == 0;
+            if wanted[state] {
+                wanted[self.parents[state] as usize] = true;
+            }
+        }
+        let mut renumbered = vec![u32::MAX; self.n_states()];
+        let mut out = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        for (level, &first) in self.level_starts.iter().enumerate() {
+            let end = self.level_starts.get(level + 1).map_or(self.n_states(), |&e| e as usize);
+            let mut members: Vec<u32> = (first..end as u32).filter(|&s| wanted[s as usize]).collect();
+            if members.is_empty() {
+                break;
+            }
+            members.sort_by_key(|&s| {
+                let parent = self.parents[s as usize];
+                (if s == 0 { 0 } else { renumbered[parent as usize] }, self.flips[s as usize])
+            });
+            out.0.push(out.1.len() as u32);
+            for s in members {
+                renumbered[s as usize] = out.1.len() as u32;
+                out.1.push(if s == 0 { 0 } else { renumbered[self.parents[s as usize] as usize] });
+                out.2.push(self.flips[s as usize]);
+                out.3.push(if named[s as usize] { self.hashes[s as usize] } else { STEP });
+            }
+        }
+        Self::from_parts(out.0, out.1, out.2, out.3)
+    }
+
+    /// Counts by number of boundary quads.
+    pub fn stats(&self) -> AtlasStats {
+        let quads = self.quads();
+        let mut classes = std::collections::BTreeMap::<usize, ClassStats>::new();
+        for run in self.index.chunk_by(|&a, &b| self.hashes[a as usize] == self.hashes[b as usize]) {
+            let hexes = self.hexes_of(run[0]);
+            let entry = classes.entry(usize::from(quads[run[0] as usize])).or_default();
+            entry.fewest = if entry.classes == 0 { hexes } else { entry.fewest.min(hexes) };
+            entry.most = entry.most.max(hexes);
+            entry.hexes += u64::from(hexes);
+            entry.classes += 1;
+        }
+        AtlasStats { states: self.n_states(), classes, levels: self.level_starts.len() }
+    }
+}

@@ -1,0 +1,437 @@
+//! Two files for an atlas: the *log* a growth appends to, level by level, and the *packed* form that ships.
+//!
+//! Log: header (magic, cap, width), then one record a level: level, children, thinned, number of states, the states
+//! (parent `u32`, flip 2 bytes, class hash 5 bytes), xxh3-64 of all that. A level is written in one go and synced, so a
+//! killed growth loses the level in flight; a torn last record is cut off on resuming.
+//! Packed: magic, xxh3-64 of the rest, then a deflate stream of the arrays with parents as differences.
+//! All numbers little-endian.
+
+use crate::atlas::{Atlas, STEP, short_hash};
+use crate::flip::Flip;
+use crate::grow::{GrowOptions, Growth, LevelReport};
+use flate2::{Compression, read::DeflateDecoder, write::DeflateEncoder};
+use std::fs::{File, OpenOptions};
+use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+use xxhash_rust::xxh3::xxh3_64;
+
+const LOG_MAGIC: &[u8; 8] = b"HXGROW01";
+const PACKED_MAGIC: &[u8; 8] = b"HXATLAS1";
+const HASH_BYTES: usize = 5;
+const STATE_BYTES: usize = 4 + 2 + HASH_BYTES;
+const HEADER_BYTES: usize = 8 + 4 + 4;
+const RECORD_HEADER_BYTES: usize = 4 + 8 + 8 + 8;
+
+/// Why an atlas file cannot be used.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum AtlasError {
+    /// Reading or writing failed.
+    #[error("{path}: {source}")]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// Not an atlas file.
+    #[error("{path} is not a hexfill atlas; build one with `hexfill atlas build -o FILE`")]
+    NotAnAtlas {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A checksum or a value is wrong.
+    #[error("{path} is damaged at byte {offset}: {what}; delete it and build it again")]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// Where.
+        offset: u64,
+        /// What is wrong.
+        what: &'static str,
+    },
+    /// The log belongs to a growth with other options.
+    #[error("{path} was grown with cap {} and width {}, not cap {} and width {}; use the same options or another file", given.cap, given.width, wanted.cap, wanted.width)]
+    OtherOptions {
+        /// The file.
+        path: PathBuf,
+        /// What the file says.
+        given: GrowOptions,
+        /// What was asked for.
+        wanted: GrowOptions,
+    },
+    /// Another process is growing this atlas.
+    #[error("{path} is in use by another process")]
+    Locked {
+        /// The file.
+        path: PathBuf,
+    },
+}
+
+fn io_error(path: &Path) -> impl Fn(io::Error) -> AtlasError + '_ {
+    |source| AtlasError::Io { path: path.to_owned(), source }
+}
+
+/// One level as the log holds it.
+struct Record {
+    parents: Vec<u32>,
+    flips: Vec<Flip>,
+    hashes: Vec<u64>,
+}
+
+/// The log of a growth, open for appending (and locked against a second writer).
+pub struct GrowthLog {
+    file: File,
+    path: PathBuf,
+}
+
+impl GrowthLog {
+    /// Opens the log at `path`, or starts it, and brings the growth up to the last whole level in it.
+    ///
+    /// # Errors
+    /// [`AtlasError`] if the file is no log, is damaged before its last record, belongs to other options, or is in use.
+    pub fn open(path: &Path, options: GrowOptions) -> Result<(Self, Growth), AtlasError> {
+        let fail = io_error(path);
+        let mut file = OpenOptions::new().read(true).append(true).create(true).open(path).map_err(&fail)?;
+        if file.try_lock().is_err() {
+            return Err(AtlasError::Locked { path: path.to_owned() });
+        }
+        let mut growth = Growth::new(options);
+        let mut bytes = Vec::new();
+        file.read_to_end(&mut bytes).map_err(&fail)?;
+        if bytes.len() < HEADER_BYTES {
+            let header = header_bytes(growth.options());
+            if !header.starts_with(&bytes) && bytes != header[..bytes.len().min(header.len())] {
+                return Err(AtlasError::NotAnAtlas { path: path.to_owned() });
+            }
+            file.set_len(0).map_err(&fail)?;
+            file.write_all(&header).map_err(&fail)?;
+            file.sync_data().map_err(&fail)?;
+            return Ok((Self { file, path: path.to_owned() }, growth));
+        }
+        let given = parse_header(&bytes, path)?;
+        if given != growth.options() {
+            return Err(AtlasError::OtherOptions { path: path.to_owned(), given, wanted: growth.options() });
+        }
+        let mut at = HEADER_BYTES;
+        while let Some((record, end)) = parse_record(&bytes, at, growth.level() + 1, path)? {
+            let damaged = |what| AtlasError::Damaged { path: path.to_owned(), offset: at as u64, what };
+            growth
+                .replay_level(&record.parents, &record.flips)
+                .ok_or_else(|| damaged("a flip is not legal on its parent"))?;
+            at = end;
+        }
+        // A torn last record: the level in flight when the process was killed.
+        file.set_len(at as u64).map_err(&fail)?;
+        file.seek(SeekFrom::End(0)).map_err(&fail)?;
+        Ok((Self { file, path: path.to_owned() }, growth))
+    }
+
+    /// Appends the newest level of the growth and syncs it to disk.
+    ///
+    /// # Errors
+    /// [`AtlasError::Io`].
+    pub fn append(&mut self, growth: &Growth, report: &LevelReport) -> Result<(), AtlasError> {
+        let states = growth.newest_level();
+        let mut bytes = Vec::with_capacity(RECORD_HEADER_BYTES + states.len() * STATE_BYTES + 8);
+        bytes.extend_from_slice(&report.level.to_le_bytes());
+        bytes.extend_from_slice(&report.children.to_le_bytes());
+        bytes.extend_from_slice(&report.thinned.to_le_bytes());
+        bytes.extend_from_slice(&(states.len() as u64).to_le_bytes());
+        for (state, class) in states {
+            bytes.extend_from_slice(&state.parent.to_le_bytes());
+            bytes.extend_from_slice(&state.flip.to_bytes());
+            bytes.extend_from_slice(&short_hash(class).to_le_bytes()[..HASH_BYTES]);
+        }
+        let sum = xxh3_64(&bytes);
+        bytes.extend_from_slice(&sum.to_le_bytes());
+        let fail = io_error(&self.path);
+        self.file.write_all(&bytes).map_err(&fail)?;
+        self.file.sync_data().map_err(&fail)
+    }
+}
+
+fn header_bytes(options: GrowOptions) -> Vec<u8> {
+    let mut header = LOG_MAGIC.to_vec();
+    header.extend_from_slice(&(options.cap as u32).to_le_bytes());
+    header.extend_from_slice(&options.width.to_le_bytes());
+    header
+}
+
+fn u32_at(bytes: &[u8], at: usize) -> u32 {
+    u32::from_le_bytes(bytes[at..at + 4].try_into().expect("four bytes"))
+}
+
+fn u64_at(bytes: &[u8], at: usize) -> u64 {
+    u64::from_le_bytes(bytes[at..at + 8].try_into().expect("eight bytes"))
+}
+
+fn parse_header(bytes: &[u8], path: &Path) -> Result<GrowOptions, AtlasError> {
+    if bytes.len() < HEADER_BYTES || &bytes[..8] != LOG_MAGIC {
+        return Err(AtlasError::NotAnAtlas { path: path.to_owned() });
+    }
+    Ok(GrowOptions { cap: u32_at(bytes, 8) as usize, width: u32_at(bytes, 12) })
+}
+
+/// The record at byte `at` and where it ends; `None` at the end of the file or for a torn last record.
+fn parse_record(bytes: &[u8], at: usize, level: u32, path: &Path) -> Result<Option<(Record, usize)>, AtlasError> {
+    let damaged = |what| AtlasError::Damaged { path: path.to_owned(), offset: at as u64, what };
+    let rest = &bytes[at..];
+    if rest.len() < RECORD_HEADER_BYTES {
+        return Ok(None);
+    }
+    let n = u64_at(rest, 20) as usize;
+    let Some(end) = n.checked_mul(STATE_BYTES).and_then(|b| b.checked_add(RECORD_HEADER_BYTES)) else {
+        return Err(damaged("impossible number of states"));
+    };
+    if rest.len() < end.saturating_add(8) {
+        return Ok(None);
+    }
+    if xxh3_64(&rest[..end]) != u64_at(rest, end) {
+        return Err(damaged("checksum does not match"));
+    }
+    if u32_at(rest, 0) != level {
+        return Err(damaged("levels are out of order"));
+    }
+    let mut record = Record { parents: Vec::new(), flips: Vec::new(), hashes: Vec::new() };
+    for state in rest[RECORD_HEADER_BYTES..end].chunks_exact(STATE_BYTES) {
+        record.parents.push(u32_at(state, 0));
+        record.flips.push(Flip::from_bytes([state[4], state[5]]).ok_or_else(|| damaged("unknown flip"))?);
+        let mut hash = [0; 8];
+        hash[..HASH_BYTES].copy_from_slice(&state[6..]);
+        record.hashes.push(u64::from_le_bytes(hash));
+    }
+    Ok(Some((record, at + end + 8)))
+}
+
+impl Atlas {
+    /// Reads an atlas of either form.
+    ///
+    /// # Errors
+    /// [`AtlasError`].
+    pub fn read_path(path: &Path) -> Result<Self, AtlasError> {
+        let bytes = std::fs::read(path).map_err(io_error(path))?;
+        if bytes.starts_with(PACKED_MAGIC) {
+            return Self::read_packed(&bytes).map_err(|what| AtlasError::Damaged {
+                path: path.to_owned(),
+                offset: 0,
+                what,
+            });
+        }
+        parse_header(&bytes, path)?;
+        let mut starts = vec![0];
+        let mut all = Record {
+            parents: vec![0],
+            flips: vec![Flip::from_bytes([0, 0]).expect("kind 0 exists")],
+            hashes: vec![short_hash(crate::grow::cube_class())],
+        };
+        let mut at = HEADER_BYTES;
+        while let Some((record, end)) = parse_record(&bytes, at, starts.len() as u32 + 1, path)? {
+            let below = all.parents.len() as u32;
+            if record.parents.iter().any(|&p| p >= below) {
+                return Err(AtlasError::Damaged {
+                    path: path.to_owned(),
+                    offset: at as u64,
+                    what: "parent above its child",
+                });
+            }
+            starts.push(below);
+            all.parents.extend(record.parents);
+            all.flips.extend(record.flips);
+            all.hashes.extend(record.hashes);
+            at = end;
+        }
+        Ok(Self::from_parts(starts, all.parents, all.flips, all.hashes))
+    }
+
+    /// Writes the packed form.
+    ///
+    /// # Errors
+    /// Whatever the writer says.
+    pub fn write_packed(&self, out: &mut impl Write) -> io::Result<()> {
+        let mut body = Vec::new();
+        varint(&mut body, self.level_starts.len() as u64);
+        for (level, &start) in self.level_starts.iter().enumerate() {
+            let end = self.level_starts.get(level + 1).copied().unwrap_or(self.parents.len() as u32);
+            varint(&mut body, u64::from(end - start));
+            let mut last = 0;
+            for &parent in &self.parents[start as usize..end as usize] {
+                // Zigzag: pruned atlases have ascending parents, others need not.
+                let step = i64::from(parent) - last;
+                varint(&mut body, ((step << 1) ^ (step >> 63)) as u64);
+                last = i64::from(parent);
+            }
+        }
+        body.extend(self.flips.iter().map(|f| f.kind as u8));
+        body.extend(self.flips.iter().map(|f| f.dart));
+        for &hash in &self.hashes {
+            if hash == STEP {
+                body.push(0);
+            } else {
+                body.push(1);
+            }
+        }
+        for &hash in self.hashes.iter().filter(|&&h| h != STEP) {
+            body.extend_from_slice(&hash.to_le_bytes()[..HASH_BYTES]);
+        }
+        let mut encoder = DeflateEncoder::new(Vec::new(), Compression::best());
+        encoder.write_all(&body)?;
+        let body = encoder.finish()?;
+        out.write_all(PACKED_MAGIC)?;
+        out.write_all(&xxh3_64(&body).to_le_bytes())?;
+        out.write_all(&body)
+    }
+
+    /// Reads the packed form.
+    ///
+    /// # Errors
+    /// What is wrong with the bytes.
+    pub fn read_packed(bytes: &[u8]) -> Result<Self, &'static str> {
+        let body = bytes.strip_prefix(PACKED_MAGIC).ok_or("not a packed atlas")?;
+        if body.len() < 8 {
+            return Err("truncated");
+        }
+        if xxh3_64(&body[8..]) != u64_at(body, 0) {
+            return Err("checksum does not match");
+        }
+        let mut data = Vec::new();
+        DeflateDecoder::new(&body[8..]).read_to_end(&mut data).map_err(|_| "broken deflate stream")?;
+        let mut data = data.as_slice();
+        let n_levels = read_varint(&mut data).ok_or("truncated")?;
+        let mut level_starts = Vec::new();
+        let mut parents: Vec<u32> = Vec::new();
+        for level in 0..n_levels {
+            let below = parents.len() as i64;
+            level_starts.push(below as u32);
+            let mut last = 0i64;
+            for _ in 0..read_varint(&mut data).ok_or("truncated")? {
+                let step = read_varint(&mut data).ok_or("truncated")?;
+                last = last.wrapping_add((step >> 1) as i64 ^ -((step & 1) as i64));
+                if last < 0 || (last >= below && level > 0) || (level == 0 && last != 0) {
+                    return Err("parent above its child");
+                }
+                parents.push(last as u32);
+            }
+        }
+        let n = parents.len();
+        if n == 0 || data.len() < 3 * n {
+            return Err("truncated");
+        }
+        let (kinds, rest) = data.split_at(n);
+        let (darts, rest) = rest.split_at(n);
+        let (named, mut rest) = rest.split_at(n);
+        let flips: Option<Vec<Flip>> = kinds.iter().zip(darts).map(|(&k, &d)| Flip::from_bytes([k, d])).collect();
+        let mut hashes = vec![STEP; n];
+        for (slot, _) in hashes.iter_mut().zip(named).filter(|(_, named)| **named == 1) {
+            let (head, tail) = rest.split_at_checked(HASH_BYTES).ok_or("truncated")?;
+            let mut hash = [0; 8];
+            hash[..HASH_BYTES].copy_from_slice(head);
+            *slot = u64::from_le_bytes(hash);
+            rest = tail;
+        }
+        if !rest.is_empty() {
+            return Err("bytes after the end");
+        }
+        Ok(Self::from_parts(level_starts, parents, flips.ok_or("unknown flip")?, hashes))
+    }
+}
+
+fn varint(out: &mut Vec<u8>, mut x: u64) {
+    while x >= 0x80 {
+        out.push(x as u8 | 0x80);
+        x >>= 7;
+    }
+    out.push(x as u8);
+}
+
+fn read_varint(data: &mut &[u8]) -> Option<u64> {
+    let mut x = 0u64;
+    for shift in (0..64).step_by(7) {
+        let (&byte, rest) = data.split_first()?;
+        *data = rest;
+        x |= u64::from(byte & 0x7f) << shift;
+        if byte < 0x80 {
+            return Some(x);
+        }
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hexfill_mesh::Context;
+
+    fn grown(levels: u32) -> Growth {
+        let mut growth = Growth::new(GrowOptions { cap: 18, width: 2 });
+        while growth.level() < levels {
+            growth.grow(&Context::default());
+        }
+        growth
+    }
+
+    #[test]
+    fn packed_atlases_come_back_and_damage_is_noticed() {
+        let atlas = Atlas::from_growth(&grown(9));
+        for atlas in [atlas.pruned(1, |quads, _| quads <= 14), atlas] {
+            let mut bytes = Vec::new();
+            atlas.write_packed(&mut bytes).unwrap();
+            assert_eq!(Atlas::read_packed(&bytes).unwrap(), atlas);
+            for at in 0..bytes.len() {
+                let mut bad = bytes.clone();
+                bad[at] ^= 0x10;
+                assert!(Atlas::read_packed(&bad).is_err(), "byte {at}");
+                assert!(Atlas::read_packed(&bytes[..at]).is_err());
+            }
+        }
+    }
+
+    #[test]
+    fn a_torn_log_resumes_to_the_same_atlas() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("a.hxgrow");
+        let options = GrowOptions { cap: 18, width: 2 };
+        let whole = Atlas::from_growth(&grown(8));
+        let mut previous_len = 0;
+        for round in 0..12 {
+            let (mut log, mut growth) = GrowthLog::open(&path, options).unwrap();
+            if growth.level() == 8 {
+                assert_eq!(Atlas::from_growth(&growth), whole);
+                drop(log);
+                assert_eq!(Atlas::read_path(&path).unwrap(), whole);
+                break;
+            }
+            let report = growth.grow(&Context::default());
+            log.append(&growth, &report).unwrap();
+            drop(log);
+            let len = std::fs::metadata(&path).unwrap().len();
+            if round % 3 == 1 {
+                // Killed while writing: half of the record is on disk.
+                let file = OpenOptions::new().write(true).open(&path).unwrap();
+                file.set_len(previous_len + (len - previous_len) / 2).unwrap();
+            }
+            previous_len = std::fs::metadata(&path).unwrap().len().max(previous_len);
+        }
+        let wrong = GrowthLog::open(&path, GrowOptions { cap: 20, width: 2 });
+        assert!(matches!(wrong, Err(AtlasError::OtherOptions { .. })));
+        let mut bytes = std::fs::read(&path).unwrap();
+        bytes[60] ^= 1;
+        std::fs::write(&path, &bytes).unwrap();
+        assert!(matches!(GrowthLog::open(&path, options), Err(AtlasError::Damaged { .. })));
+        std::fs::write(&path, b"something else entirely").unwrap();
+        assert!(matches!(GrowthLog::open(&path, options), Err(AtlasError::NotAnAtlas { .. })));
+    }
+
+    #[test]
+    fn every_kept_state_replays_to_a_ball_of_its_class() {
+        let growth = grown(9);
+        let atlas = Atlas::from_growth(&growth);
+        for state in 0..atlas.n_states() as u32 {
+            let ball = crate::Ball::replay(atlas.flips_to(state)).unwrap();
+            ball.debug_check();
+            assert_eq!(ball.n_hexes(), atlas.hexes_of(state) as usize);
+            let (best, _, _) = atlas.best_fit(&ball.boundary_only(), 99).unwrap();
+            assert!(best.n_hexes() <= ball.n_hexes());
+        }
+    }
+}
