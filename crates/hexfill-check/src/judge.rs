@@ -4,6 +4,7 @@ use crate::input::{Judged, Options, Parts};
 use crate::report::{Ball, Facts, Findings, LevelReport, Offender, Outcome, Report};
 use crate::rule::{Level, Rule, Rules};
 use crate::topology::boundary::{compare, parts};
+use crate::topology::homology::homology;
 use crate::topology::parity::ParityForest;
 use crate::topology::shape::judge_shape;
 use crate::topology::star::{BoundaryQuad, StarJudge, StarRules, StarSums};
@@ -151,7 +152,7 @@ impl Run<'_> {
             self.orientation(forest, &sums.not_orientable);
         }
         self.parts(forest, &sums.boundary);
-        self.facts.ball = Some(Ball::Unknown);
+        self.homology(stars);
     }
 
     /// Names the parts that cannot be oriented, and in the others the hexes ordered against the majority.
@@ -209,5 +210,31 @@ impl Run<'_> {
                 self.findings.add(Rule::MeshDisconnected, || Offender::at(&[h], &[]).note(why));
             }
         }
+    }
+
+    /// Betti numbers, and whether the mesh is a ball.
+    fn homology(&mut self, stars: &Stars) {
+        self.facts.ball = Some(Ball::Unknown);
+        if !self.options.betti || self.findings.count(Rule::QuadInThreeHexes) > 0 {
+            return;
+        }
+        self.ctx.report("check homology", 0, None, String::new);
+        let Some(found) = homology(self.input.hexes, stars, self.facts.closed_parts.unwrap_or(0), self.ctx) else {
+            return;
+        };
+        self.facts.betti = Some(found.betti);
+        if self.findings.breaks_level(Level::L2) || self.options.rules == Rules::Weill {
+            return;
+        }
+        let links = [Rule::EdgePinched, Rule::VertexPinched, Rule::VertexLinkNotDisk, Rule::VertexLinkNotSphere];
+        let manifold = links.iter().all(|&rule| self.findings.count(rule) == 0);
+        let sphere = self.facts.boundary.as_ref().is_some_and(|b| b.len() == 1 && b[0].genus == Some(0));
+        self.facts.ball = Some(if !manifold || !sphere || found.betti != [1, 0, 0, 0] {
+            Ball::No
+        } else if found.critical == [1, 0, 0, 0] {
+            Ball::Yes
+        } else {
+            Ball::Homology
+        });
     }
 }

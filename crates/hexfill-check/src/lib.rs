@@ -12,7 +12,7 @@
 //! let cube = [[0, 1, 2, 3, 4, 5, 6, 7]];
 //! let report = judge(&Judged::connectivity(8, &cube), &Options::default(), &Context::default());
 //! assert!(report.passed(Level::L3));
-//! assert_eq!(report.facts.euler, Some(1));
+//! assert_eq!(report.facts.betti, Some([1, 0, 0, 0]));
 //! ```
 
 mod input;
