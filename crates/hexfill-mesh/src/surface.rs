@@ -368,6 +368,15 @@ impl QuadSurface {
         })
     }
 
+    /// Per vertex: the smallest dart that starts from it, `None` for a vertex no quad uses. Linear time.
+    pub fn dart_of_vertices(&self) -> Vec<Option<Dart>> {
+        let mut dart = vec![None; self.n_vertices];
+        for d in self.darts() {
+            dart[self.origin(d).index()].get_or_insert(d);
+        }
+        dart
+    }
+
     /// Number of quads round a vertex (0: unused).
     #[inline]
     pub fn degree(&self, v: VertexId) -> u32 {
