@@ -1,28 +1,20 @@
 //! scratch
 use hexfill_enumerate::*;
-use std::collections::HashSet;
 fn main() {
-    let top: usize = std::env::args().nth(1).map_or(6, |s| s.parse().unwrap());
-    let mut level = vec![Complex::cube()];
-    for n in 2..=top {
+    let a: Vec<String> = std::env::args().collect();
+    let n: usize = a[1].parse().unwrap();
+    let rule: Rule = a[2].parse().unwrap();
+    let threads: usize = a[3].parse().unwrap();
+    let narrow = a.get(4).is_some_and(|s| s == "narrow");
+    let mut p = Params::new(n, rule);
+    p.nonorientable = a.get(4).is_some_and(|s| s == "nonor");
+    p.filter = a.get(5).map(|_| Filter{max_chords:3, from:8});
+    let opts = LevelOptions{threads, narrow_hashes: narrow};
+    let ctx = hexfill_mesh::Context::default();
+    let mut level = first_level(&p, Keep{codes:true,selected:None});
+    for m in 1..=n {
         let t = std::time::Instant::now();
-        let mut set = HashSet::new();
-        let mut next = Vec::new();
-        let mut raw = 0; let mut by = [0; 7];
-        let mut minc = 999; let mut minq = 999; let mut le3 = 0;
-        for p in &level {
-            extend_weill(p, |c, g| {
-                raw += 1; by[g as usize] += 1;
-                let l = canonical(c);
-                if set.insert(l.code) {
-                    let b = Boundary::of(c);
-                    let k = b.n_chords();
-                    minc = minc.min(k); minq = minq.min(b.n_quads()); if k <= 3 { le3 += 1 }
-                    next.push(*c);
-                }
-            });
-        }
-        println!("{n} classes {} raw {raw} {by:?} minc {minc} minq {minq} le3 {le3} {:?}", next.len(), t.elapsed());
-        level = next;
+        if m>1 { level = next_level(&p, &level.codes, &opts, Keep{codes:m<n,selected:None}, &ctx).unwrap(); }
+        println!("{m} {:?} set {} mass {} le3 {}\n   {}", t.elapsed(), level.set_bytes, level.tally.mass_balances(), level.tally.with_at_most_chords(3), serde_json::to_string(&level.tally).unwrap());
     }
 }

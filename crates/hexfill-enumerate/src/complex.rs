@@ -175,6 +175,12 @@ impl Complex {
         crate::frames::FRAMES[self.across[a][f] as usize % 48][MIRROR[f / 2][i & 7] as usize] as usize
     }
 
+    /// Whether no side is free.
+    #[inline]
+    pub fn is_closed(&self) -> bool {
+        self.next[..self.n_cubes()].iter().all(|sides| !sides.contains(&FREE))
+    }
+
     /// Bit set of all cubes.
     #[inline]
     pub(crate) fn all(&self) -> u16 {
@@ -249,25 +255,39 @@ impl Complex {
         true
     }
 
-    /// The complex without cube `a`, vertices renumbered in order of appearance; gluings and identifications of the other
-    /// cubes are kept as they are. `None` if the rest is not connected.
-    pub fn without(&self, a: usize) -> Option<Self> {
-        let mut rename = [FREE; MAX_VERTICES];
-        let mut n = 0;
-        let mut out = Vec::with_capacity(MAX_CUBES);
-        for (i, cube) in self.cubes().iter().enumerate() {
-            if i != a {
-                out.push(cube.map(|v| {
-                    let slot = &mut rename[v as usize & 63];
-                    if *slot == FREE {
-                        *slot = n;
-                        n += 1;
-                    }
-                    *slot
-                }));
+    /// The complex without cube `a`: the last cube takes its place, vertices keep their names (some may be unused), and
+    /// all gluings and identifications of the other cubes stay as they are. The rest may be disconnected.
+    pub(crate) fn removed(&self, a: usize) -> Self {
+        let mut out = *self;
+        let last = self.n_cubes() - 1;
+        for f in 0..6 {
+            let b = self.next[a][f];
+            if b != FREE {
+                out.next[b as usize % MAX_CUBES][self.opposite_side(a, f) % 6] = FREE;
             }
         }
-        Self::from_cubes(&out).ok()
+        out.cubes[a] = out.cubes[last];
+        out.sets[a] = out.sets[last];
+        out.next[a] = out.next[last];
+        out.across[a] = out.across[last];
+        if a != last {
+            for f in 0..6 {
+                let b = out.next[a][f];
+                if b != FREE {
+                    let side = out.opposite_side(a, f) % 6;
+                    out.next[b as usize % MAX_CUBES][side] = a as u8;
+                }
+            }
+        }
+        out.next[last] = [FREE; 6];
+        out.n_cubes -= 1;
+        out
+    }
+
+    /// Whether all cubes are positively oriented as they stand.
+    #[inline]
+    pub(crate) fn is_oriented(&self) -> bool {
+        (0..self.n_cubes()).all(|a| (0..6).all(|f| self.next[a][f] == FREE || self.across[a][f] < 24))
     }
 }
 
@@ -303,7 +323,9 @@ mod tests {
         }
         assert!(c.is_orientable());
         assert_eq!(c.non_cut(), 0b11);
-        assert_eq!(c.without(1).unwrap(), Complex::cube());
+        for a in 0..2 {
+            assert_eq!(crate::canonical(&c.removed(a)).code, crate::canonical(&Complex::cube()).code);
+        }
     }
 
     #[test]

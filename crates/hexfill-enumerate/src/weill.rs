@@ -11,7 +11,7 @@
 //! Each new cube is made once: its glued facet on the lowest quad is its bottom, seen in one fixed rotation.
 
 use crate::boundary::Boundary;
-use crate::complex::{Complex, MAX_CUBES, MAX_VERTICES, set_of, side_set_of};
+use crate::complex::{Complex, FREE, MAX_CUBES, MAX_VERTICES, set_of, side_set_of};
 use crate::frames::EDGES_OFF;
 use hexfill_mesh::cube::{EDGES, FACETS};
 
@@ -193,6 +193,22 @@ impl<F: FnMut(&Complex, u8)> Site<'_, F> {
     }
 }
 
+/// Whether cube `m` of a complex that rule `weill` made could have been the last one added, given that the others are a
+/// legal complex: rules 1 and 2 against every other cube (rule 3 is a property of the whole complex).
+pub(crate) fn could_be_last(c: &Complex, m: usize) -> bool {
+    let own = c.sets[m];
+    let free: [u64; 6] =
+        std::array::from_fn(|f| if c.next[m][f] == FREE { side_set_of(&c.cubes[m], f) } else { 0 });
+    (0..c.n_cubes()).filter(|&a| a != m).all(|a| {
+        let common = own & c.sets[a];
+        match common.count_ones() {
+            0..=2 => true,
+            3 | 4 => free.iter().all(|facet| (facet & common).count_ones() <= 2),
+            _ => false,
+        }
+    })
+}
+
 /// The rules a complex breaks as a rule-`weill` addition of its last cube to the others, in words; empty if it is legal.
 /// Slow and separate from [`extend_weill`], for reports.
 pub fn weill_violations(c: &Complex) -> Vec<String> {
@@ -205,7 +221,7 @@ pub fn weill_violations(c: &Complex) -> Vec<String> {
         }
         for f in 0..6 {
             let common = (side_set_of(&c.cubes[n], f) & other).count_ones();
-            if c.next[n][f] == crate::complex::FREE && common > 2 {
+            if c.next[n][f] == FREE && common > 2 {
                 out.push(format!("free facet {f} of h{n} shares {common} vertices with h{o}"));
             }
         }
@@ -213,7 +229,7 @@ pub fn weill_violations(c: &Complex) -> Vec<String> {
     let mut uses = std::collections::BTreeMap::new();
     for a in 0..c.n_cubes() {
         for f in 0..6 {
-            if c.next[a][f] == crate::complex::FREE {
+            if c.next[a][f] == FREE {
                 for k in 0..4 {
                     let (v, w) = (c.cubes[a][FACETS[f][k]], c.cubes[a][FACETS[f][(k + 1) % 4]]);
                     *uses.entry([v.min(w), v.max(w)]).or_insert(0) += 1;

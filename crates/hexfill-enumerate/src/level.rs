@@ -1,0 +1,203 @@
+//! The level-by-level engine: all children of all classes of one size, one kept of each class in a set of hashes.
+//!
+//! Right for both rules, and the only choice for the poster's filter. Memory: 16 bytes a class for the set (8 with narrow
+//! hashes) and a code for each class that is extended further. Threads share the set; which of them meets a class first
+//! does not matter, since only its canonical code and invariants are used. Codes are sorted at the end of a
+//! level, so that the result does not depend on the threads.
+
+use crate::canonical::{Code, canonical};
+use crate::complex::Complex;
+use crate::error::EnumerateError;
+use crate::hashset::{HashKey, ShardedSet};
+use crate::params::Params;
+use crate::shape::Selection;
+use crate::tally::{Counter, Tally};
+use hexfill_mesh::Context;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// How the level engine works; none of it changes a result.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct LevelOptions {
+    /// Number of threads.
+    pub threads: usize,
+    /// 64-bit instead of 128-bit hashes: half the memory, and at n = 8 a chance of about 1e-5 of a wrong count.
+    pub narrow_hashes: bool,
+}
+
+impl Default for LevelOptions {
+    fn default() -> Self {
+        Self { threads: 1, narrow_hashes: false }
+    }
+}
+
+/// One finished level.
+#[derive(Clone, Debug)]
+pub struct Level {
+    /// Number of cubes.
+    pub cubes: usize,
+    /// The counts.
+    pub tally: Tally,
+    /// Codes of the classes to be extended (all without a filter), sorted. Empty for the last level unless asked for.
+    pub codes: Vec<Code>,
+    /// Codes of the selected classes of the last level, sorted.
+    pub selected: Vec<Code>,
+    /// Bytes held by the set of hashes at the end.
+    pub set_bytes: u64,
+}
+
+/// What to keep of a level besides the counts.
+#[derive(Clone, Copy, Default, Debug)]
+pub struct Keep<'a> {
+    /// The codes of the classes that go on to the next level.
+    pub codes: bool,
+    /// The codes of selected classes.
+    pub selected: Option<&'a Selection>,
+}
+
+/// Level 1: one cube.
+pub fn first_level(params: &Params, keep: Keep<'_>) -> Level {
+    let cube = Complex::cube();
+    let labelling = canonical(&cube);
+    let mut counter = Counter::new(params.nonorientable);
+    let (boundary, shape) = counter.class(&cube, &labelling, labelling.code.hash128());
+    let mut selected = Vec::new();
+    if keep.selected.is_some_and(|s| s.wants(&boundary, &shape)) {
+        counter.selected();
+        selected.push(labelling.code);
+    }
+    let codes =
+        if keep.codes && params.extends(1, shape.chords) { vec![labelling.code] } else { Vec::new() };
+    Level { cubes: 1, tally: counter.finish(), codes, selected, set_bytes: 0 }
+}
+
+/// The level after `parents`, which are codes of one size.
+///
+/// # Errors
+/// [`EnumerateError::Stopped`] if the context says so, [`EnumerateError::BadCode`] for parents that are not codes.
+pub fn next_level(
+    params: &Params,
+    parents: &[Code],
+    options: &LevelOptions,
+    keep: Keep<'_>,
+    ctx: &Context<'_>,
+) -> Result<Level, EnumerateError> {
+    if options.narrow_hashes {
+        grow::<u64>(params, parents, options, keep, ctx)
+    } else {
+        grow::<u128>(params, parents, options, keep, ctx)
+    }
+}
+
+/// Levels 1 to `params.cubes`; only the last keeps selected codes, and it keeps codes to extend if `keep_last`.
+///
+/// # Errors
+/// As [`next_level`].
+pub fn all_levels(
+    params: &Params,
+    options: &LevelOptions,
+    selection: Option<&Selection>,
+    keep_last: bool,
+    ctx: &Context<'_>,
+) -> Result<Vec<Level>, EnumerateError> {
+    params.check()?;
+    let keep = |n: usize| Keep {
+        codes: n < params.cubes || keep_last,
+        selected: if n == params.cubes { selection } else { None },
+    };
+    let mut levels = vec![first_level(params, keep(1))];
+    for n in 2..=params.cubes {
+        let parents = std::mem::take(&mut levels[n - 2].codes);
+        let level = next_level(params, &parents, options, keep(n), ctx)?;
+        levels.push(level);
+    }
+    Ok(levels)
+}
+
+fn grow<K: HashKey>(
+    params: &Params,
+    parents: &[Code],
+    options: &LevelOptions,
+    keep: Keep<'_>,
+    ctx: &Context<'_>,
+) -> Result<Level, EnumerateError> {
+    const BLOCK: usize = 32;
+    let cubes = parents.first().map_or(0, Code::n_cubes) + 1;
+    let set = ShardedSet::<K>::new();
+    let cursor = AtomicUsize::new(0);
+    let parts = Mutex::new(Vec::new());
+    let work = || -> Result<(), EnumerateError> {
+        let mut counter = Counter::new(params.nonorientable);
+        let mut codes = Vec::new();
+        let mut selected = Vec::new();
+        loop {
+            let start = cursor.fetch_add(BLOCK, Ordering::Relaxed);
+            if start >= parents.len() {
+                break;
+            }
+            if let Some(reason) = ctx.stop() {
+                return Err(EnumerateError::Stopped { reason });
+            }
+            for code in &parents[start..parents.len().min(start + BLOCK)] {
+                let parent = code.decode()?;
+                let automorphisms = canonical(&parent).automorphisms;
+                counter.parent();
+                params.extend(&parent, false, |child, glued| {
+                    counter.raw(glued, automorphisms);
+                    let labelling = canonical(child);
+                    let hash = labelling.code.hash128();
+                    if child.is_closed() {
+                        counter.raw_closed();
+                    }
+                    if !set.insert(hash) {
+                        return;
+                    }
+                    let (boundary, shape) = counter.class(child, &labelling, hash);
+                    if params.rule == crate::Rule::Strict {
+                        counter.removable(child.non_cut().count_ones(), labelling.automorphisms);
+                    }
+                    if keep.codes && params.extends(cubes, shape.chords) {
+                        codes.push(labelling.code);
+                    }
+                    if keep.selected.is_some_and(|s| s.wants(&boundary, &shape)) {
+                        counter.selected();
+                        selected.push(labelling.code);
+                    }
+                });
+            }
+            ctx.report("level", (start + BLOCK).min(parents.len()) as u64, Some(parents.len() as u64), || {
+                format!("{cubes} cubes")
+            });
+        }
+        parts.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push((counter.finish(), codes, selected));
+        Ok(())
+    };
+    run_on(options.threads, &work)?;
+    let mut level = Level { cubes, tally: Tally::default(), codes: Vec::new(), selected: Vec::new(), set_bytes: set.bytes() };
+    for (tally, codes, selected) in parts.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner) {
+        level.tally.merge(&tally);
+        level.codes.extend(codes);
+        level.selected.extend(selected);
+    }
+    level.codes.sort_unstable();
+    level.selected.sort_unstable();
+    Ok(level)
+}
+
+/// Runs the same work on several threads and returns the first error.
+pub(crate) fn run_on<E: Send>(threads: usize, work: &(dyn Fn() -> Result<(), E> + Sync)) -> Result<(), E> {
+    if threads <= 1 {
+        return work();
+    }
+    std::thread::scope(|scope| {
+        let handles: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
+        let mut out = Ok(());
+        for handle in handles {
+            match handle.join() {
+                Ok(result) => out = out.and(result),
+                Err(panic) => std::panic::resume_unwind(panic),
+            }
+        }
+        out
+    })
+}
