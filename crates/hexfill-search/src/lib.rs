@@ -7,6 +7,7 @@ mod canonical;
 mod cavity;
 mod flip;
 mod grow;
+mod inward;
 
 pub use atlas::{Atlas, AtlasStats, ClassStats};
 pub use atlas_file::{AtlasError, GrowthLog};
@@ -14,3 +15,4 @@ pub use ball::Ball;
 pub use cavity::{Cavity, MAX_QUADS, MAX_VERTICES, Pairs};
 pub use flip::{Flip, FlipKind, Placement, apply, is_legal, legal_flips, place};
 pub use grow::{GrowOptions, Growth, LevelReport, MAX_CAP};
+pub use inward::{FillOptions, FillOutcome, Filling, fill_from_atlas};

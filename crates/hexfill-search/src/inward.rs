@@ -1,0 +1,257 @@
+//! Filling a surface that is not in the atlas: glue hexes inward until what is left is.
+//!
+//! A beam search over cavities. A hex glued inside covers quads of the cavity seen from its other side, so the flips are
+//! those of a growing ball on the mirrored surface. The pairs that the glued hexes use become blocked, and the atlas
+//! filling of the rest must avoid them: then the whole obeys proper intersection, by the same pair table that makes a
+//! single flip legal.
+
+use crate::atlas::Atlas;
+use crate::ball::mirror_image;
+use crate::canonical::Canonical;
+use crate::cavity::{Cavity, MAX_QUADS};
+use crate::flip::{apply, legal_flips};
+use crate::grow::class_hash;
+use hexfill_mesh::{Context, HexMesh, QuadSurface, StopReason};
+use rayon::prelude::*;
+use rustc_hash::FxHashSet;
+use xxhash_rust::xxh3::xxh3_128;
+
+/// What to look for.
+#[derive(Clone, Copy, Debug)]
+pub struct FillOptions {
+    /// Most hexes a filling may have.
+    pub max_hexes: u32,
+    /// How many different fillings to look for.
+    pub count: usize,
+    /// How many cavities the beam keeps on each level.
+    pub beam: usize,
+    /// Look on for smaller fillings after the first until the context stops the search or the beam is empty.
+    pub improve: bool,
+}
+
+impl Default for FillOptions {
+    fn default() -> Self {
+        Self { max_hexes: 4096, count: 1, beam: 1000, improve: false }
+    }
+}
+
+/// A filling of a small sphere.
+#[derive(Clone, Debug)]
+pub struct Filling {
+    /// The mesh; the surface's vertices keep their ids, interior vertices follow.
+    pub mesh: HexMesh,
+    /// How many hexes were glued inward before the atlas took over.
+    pub glued: u32,
+}
+
+/// What a search brought.
+#[derive(Clone, Debug)]
+pub struct FillOutcome {
+    /// Fillings, fewest hexes first; not isomorphic by construction only in their last steps (compare signatures).
+    pub fillings: Vec<Filling>,
+    /// Cavities looked at.
+    pub cavities: u64,
+    /// Why the search ended. [`StopReason::Finished`] with no filling means: the beam ran dry, which proves nothing.
+    pub stop: StopReason,
+}
+
+/// A hex glued on the way, as a chain towards the surface.
+struct Glued {
+    hex: [u32; 8],
+    before: Option<u32>,
+}
+
+/// A cavity on the beam, seen from outside the remaining hole (mirrored).
+struct Hole {
+    cavity: Cavity,
+    /// Mesh vertex of each cavity vertex.
+    ids: Vec<u32>,
+    n_vertices: u32,
+    last: Option<u32>,
+}
+
+struct Child {
+    hole: Hole,
+    hex: [u32; 8],
+    parent: usize,
+    key: u128,
+    class: u128,
+    score: u32,
+}
+
+/// Fills a sphere of at most [`MAX_QUADS`] quads: the atlas first, then inward flips.
+/// `None` if the surface is not such a sphere. The surface must be 3-connected, else nothing proper exists.
+pub fn fill_from_atlas(
+    surface: &QuadSurface,
+    atlas: &Atlas,
+    options: &FillOptions,
+    ctx: &Context<'_>,
+) -> Option<FillOutcome> {
+    let (cavity, ids) = Cavity::from_surface(surface)?;
+    let mut search = Search { atlas, options, trail: Vec::new(), found: Vec::new(), seen: FxHashSet::default() };
+    let hole = Hole { cavity: mirror_image(&cavity), ids, n_vertices: surface.n_vertices() as u32, last: None };
+    search.close_with_atlas(&hole, 0);
+    let mut outcome = FillOutcome { fillings: Vec::new(), cavities: 1, stop: StopReason::Finished };
+    let mut beam = vec![hole];
+    let mut depth = 0;
+    while !search.is_satisfied() && !beam.is_empty() {
+        if let Some(stop) = ctx.stop() {
+            outcome.stop = stop;
+            break;
+        }
+        depth += 1;
+        if depth + 1 > search.most_allowed() {
+            break;
+        }
+        let (next, looked_at, stop) = search.step(beam, depth, ctx);
+        beam = next;
+        outcome.cavities += looked_at;
+        ctx.report("inward flips", u64::from(depth), None, || {
+            let best = search.best().map_or("none yet".to_owned(), |b| b.to_string());
+            let quads = beam.iter().map(|h| h.cavity.n_quads()).min().unwrap_or(0);
+            format!("{} cavities, smallest {quads} quads, best filling: {best}", outcome.cavities)
+        });
+        if let Some(stop) = stop {
+            outcome.stop = stop;
+            break;
+        }
+    }
+    search.found.sort_by_key(|(mesh, glued)| (mesh.n_hexes(), *glued));
+    outcome.fillings = search.found.into_iter().map(|(mesh, glued)| Filling { mesh, glued }).collect();
+    Some(outcome)
+}
+
+struct Search<'a> {
+    atlas: &'a Atlas,
+    options: &'a FillOptions,
+    trail: Vec<Glued>,
+    found: Vec<(HexMesh, u32)>,
+    seen: FxHashSet<u128>,
+}
+
+impl Search<'_> {
+    fn best(&self) -> Option<u32> {
+        self.found.iter().map(|(m, _)| m.n_hexes() as u32).min()
+    }
+
+    /// The largest filling still worth finding.
+    fn most_allowed(&self) -> u32 {
+        match self.best() {
+            Some(best) if self.options.count == 1 => best - 1,
+            _ => self.options.max_hexes,
+        }
+    }
+
+    fn is_satisfied(&self) -> bool {
+        self.found.len() >= self.options.count && !self.options.improve
+    }
+
+    /// Tries to fill a hole from the atlas; keeps every fit that is small enough, up to the count asked for.
+    fn close_with_atlas(&mut self, hole: &Hole, depth: u32) {
+        let outside = mirror_image(&hole.cavity);
+        for ball in self.atlas.balls_for(&outside) {
+            if depth + ball.n_hexes() as u32 > self.most_allowed() {
+                break;
+            }
+            for (map, mirrored) in ball.placements(&outside) {
+                let ids: Vec<u32> = map.iter().map(|&v| hole.ids[usize::from(v)]).collect();
+                let (mut hexes, fresh) = ball.hexes_in(&ids, mirrored, hole.n_vertices);
+                let mut at = hole.last;
+                while let Some(i) = at {
+                    hexes.push(self.trail[i as usize].hex);
+                    at = self.trail[i as usize].before;
+                }
+                if let Ok(mesh) = HexMesh::try_new((hole.n_vertices + fresh) as usize, &hexes) {
+                    self.found.push((mesh, depth));
+                }
+                if self.is_satisfied() {
+                    return;
+                }
+                // Other placements of the same ball on an unblocked boundary are images under its automorphisms.
+                if depth == 0 {
+                    break;
+                }
+            }
+        }
+    }
+
+    /// One level inward.
+    fn step(&mut self, beam: Vec<Hole>, depth: u32, ctx: &Context<'_>) -> (Vec<Hole>, u64, Option<StopReason>) {
+        let most = self.most_allowed();
+        let mut children: Vec<Child> = beam
+            .par_iter()
+            .enumerate()
+            .map_init(Canonical::new, |canonical, (parent, hole)| {
+                if ctx.stop().is_some() {
+                    return Vec::new();
+                }
+                self.children(hole, parent, depth, most, canonical)
+            })
+            .flatten_iter()
+            .collect();
+        if let Some(stop) = ctx.stop() {
+            return (Vec::new(), 0, Some(stop));
+        }
+        let looked_at = children.len() as u64;
+        children.sort_by_key(|c| (c.score, c.key, c.parent, c.hex));
+        children.dedup_by_key(|c| c.key);
+        children.retain(|c| self.seen.insert(c.key));
+        children.truncate(self.options.beam);
+        let mut next = Vec::with_capacity(children.len());
+        for child in children {
+            let before = beam[child.parent].last;
+            self.trail.push(Glued { hex: child.hex, before });
+            let hole = Hole { last: Some(self.trail.len() as u32 - 1), ..child.hole };
+            if self.atlas.hexes_hint(child.class).is_some_and(|h| depth + h <= self.most_allowed()) {
+                self.close_with_atlas(&hole, depth);
+                if self.is_satisfied() {
+                    return (Vec::new(), looked_at, None);
+                }
+            }
+            next.push(hole);
+        }
+        (next, looked_at, None)
+    }
+
+    fn children(&self, hole: &Hole, parent: usize, depth: u32, most: u32, canonical: &mut Canonical) -> Vec<Child> {
+        let mut children = Vec::new();
+        for placement in legal_flips(&hole.cavity, MAX_QUADS.min(hole.cavity.n_quads() + 4)) {
+            let (cavity, before) = apply(&hole.cavity, &placement);
+            canonical.compute(&cavity);
+            let class = class_hash(canonical.code());
+            let n = cavity.n_vertices();
+            let image = canonical.blocked_image(&cavity).0;
+            let mut name = canonical.code().to_vec();
+            name.extend(image[..n].iter().flat_map(|row| row.to_le_bytes()));
+            let hint = self.atlas.hexes_hint(class);
+            if hint.is_some_and(|h| depth + h > most) {
+                continue;
+            }
+            let old = hole.cavity.n_vertices();
+            let id = |v: u8| {
+                let v = usize::from(v);
+                if v < old { hole.ids[v] } else { hole.n_vertices + (v - old) as u32 }
+            };
+            let fresh = placement.corners.iter().filter(|&&c| usize::from(c) >= old).count() as u32;
+            let score = match hint {
+                // Known fillings first, fewest hexes first; then small holes with few blocked pairs.
+                Some(h) => h,
+                None => 100 + 16 * cavity.n_quads() as u32 + cavity.n_blocked(),
+            };
+            children.push(Child {
+                hole: Hole {
+                    ids: before[..n].iter().map(|&v| id(v)).collect(),
+                    n_vertices: hole.n_vertices + fresh,
+                    last: None,
+                    cavity,
+                },
+                hex: placement.corners.map(id),
+                parent,
+                key: xxh3_128(&name),
+                class,
+                score,
+            });
+        }
+        children
+    }
+}
