@@ -1,26 +1,40 @@
-//! Maximise the worst scaled Jacobian: sequential linear programming in a trust region, with curvature where it stalls.
+//! Sequential linear programming in a trust region: raise the worst scaled Jacobian, or lower the worst condition number.
 //!
-//! At each step the scaled Jacobians near the worst are linearised, `s + g . d >= t`, with every free vertex held within
+//! At each step the quantities near the worst are linearised, `s + g . d >= t`, with every free vertex held within
 //! `radius` times its shortest edge, and t is maximised (linear program). Where the optimum is flat, linear steps zigzag; the
 //! multipliers of the last program then weight the second derivatives of the rows (made convex), and a quadratic
-//! program gives the step. A step is taken only if the true minimum over whole cells rises and every cell
-//! stays positive in the Bernstein sense, so validity is never traded for corners.
+//! program gives the step. A step is taken only if the true worst value over whole cells improves and every cell
+//! stays positive, so validity is never traded for corners: the worst value of a cell comes from bisection, and the points
+//! where it was seen become rows of the next program.
 
-use crate::curvature::{hessian, positive_part};
 use crate::jacobian::{FRAME_EDGES, Frame, MIXED, columns, scaled, scaled_with_gradient, weights_at};
+use crate::measure::{log_condition, log_condition_with_gradient};
 use crate::problem::Problem;
 use crate::program::Program;
 use crate::vector::{Vector, cross, norm, sub};
 use hexfill_mesh::cube::POSITIONS;
 use hexfill_mesh::{Context, StopReason};
 
+/// What is improved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Goal {
+    /// Raise the worst scaled Jacobian; stop when it reaches the target.
+    ScaledJacobian {
+        /// Enough.
+        target: f64,
+    },
+    /// Lower the worst corner condition number, keeping the scaled Jacobian at least at the floor.
+    Condition {
+        /// The floor.
+        floor: f64,
+    },
+}
+
 /// Limits of a run.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct MaxMinLimits {
+pub(crate) struct Limits {
     /// Programs solved at most.
     pub(crate) iterations: usize,
-    /// Stop when the minimum reaches this.
-    pub(crate) target: f64,
     /// Rows this far above the worst take part.
     pub(crate) band: f64,
     /// Stop when a step promises less than this.
@@ -29,20 +43,13 @@ pub(crate) struct MaxMinLimits {
 
 /// What a run came to.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct MaxMin {
+pub(crate) struct Climb {
     /// The worst scaled Jacobian over all cells, whole.
-    pub(crate) value: f64,
+    pub(crate) scaled_jacobian: f64,
     /// Programs solved.
     pub(crate) iterations: usize,
     /// Set if the context asked to stop.
     pub(crate) stopped: Option<StopReason>,
-}
-
-/// A linearised scaled Jacobian: where, value, and gradient by corner of its hex.
-struct Row {
-    place: Place,
-    value: f64,
-    gradient: [Vector; 8],
 }
 
 /// A point of a cell: the hex, and coordinates in its unit cube.
@@ -52,9 +59,18 @@ struct Place {
     at: Vector,
 }
 
+/// A linearised quantity that must stay at least t (an objective row) or at least the floor: where, value, and gradient by
+/// corner of its hex.
+struct Row {
+    place: Place,
+    objective: bool,
+    value: f64,
+    gradient: [Vector; 8],
+}
+
 /// What is known of the cells at some coordinates.
 pub(crate) struct Cells {
-    /// Per hex: its worst scaled Jacobian (the lower bound, if that is not positive), and the inner points that are worst.
+    /// Per hex: its worst scaled Jacobian (negative unless the lower bound is positive), and the inner points that are worst.
     pub(crate) each: Vec<(f64, Vec<Vector>)>,
     /// The smallest of them.
     pub(crate) worst: f64,
@@ -71,32 +87,55 @@ pub(crate) fn judge(problem: &Problem, points: &[Vector], cutoff: f64) -> Cells 
     Cells { each, worst }
 }
 
-/// Raises the worst scaled Jacobian of `points` as far as it goes within the limits. If some cell is not valid to begin
-/// with, the worst value is raised all the same.
-pub(crate) fn maximise(
+/// The value the goal wants large: the worst scaled Jacobian, or minus the logarithm of the worst condition number.
+fn merit(problem: &Problem, points: &[Vector], cells: &Cells, goal: Goal) -> f64 {
+    match goal {
+        Goal::ScaledJacobian { .. } => cells.worst,
+        Goal::Condition { floor } if cells.worst < floor => f64::NEG_INFINITY,
+        Goal::Condition { .. } => {
+            let mut each = vec![0.0; problem.hexes.len()];
+            problem.map_hexes(&mut each, |h| {
+                let p = problem.corners_of(h, points);
+                corner_points().map(|at| log_condition(&columns(&p, &weights_at(at)))).fold(0.0, f64::max)
+            });
+            -each.iter().copied().fold(0.0, f64::max)
+        }
+    }
+}
+
+fn corner_points() -> impl Iterator<Item = Vector> {
+    POSITIONS.iter().map(|p| p.map(f64::from))
+}
+
+/// Improves `points` as far as it goes within the limits. For [`Goal::ScaledJacobian`] some cells may be invalid to begin with;
+/// for [`Goal::Condition`] the floor must hold.
+pub(crate) fn climb(
     problem: &Problem,
     points: &mut Vec<Vector>,
-    limits: MaxMinLimits,
+    goal: Goal,
+    limits: Limits,
     context: &Context<'_>,
-) -> MaxMin {
+) -> Climb {
     const SEEN: f64 = 0.02;
     let mut cells = judge(problem, points, 1.0);
+    let mut value = merit(problem, points, &cells, goal);
+    let target = if let Goal::ScaledJacobian { target } = goal { target } else { 0.0 };
     let mut radius: f64 = 0.5;
     let mut curved = false;
     let mut multipliers: Vec<(Place, f64)> = Vec::new();
     let mut iterations = 0;
     let mut stopped = None;
     let mut rejected = 0;
-    while iterations < limits.iterations && cells.worst < limits.target && radius > 1e-9 && !problem.free.is_empty() {
+    while iterations < limits.iterations && value < target && radius > 1e-9 && !problem.free.is_empty() {
         stopped = context.stop();
         if stopped.is_some() {
             break;
         }
         iterations += 1;
         let reach = reach(problem, points);
-        let rows = linearise(problem, points, &cells, cells.worst + limits.band);
+        let rows = linearise(problem, points, &cells, goal, value, limits.band);
         let curvature = if curved { multipliers.as_slice() } else { &[] };
-        let Some(step) = solve(problem, points, &rows, &reach, radius, curvature) else {
+        let Some(step) = solve(problem, points, &rows, goal, value, &reach, radius, curvature) else {
             radius *= 0.25;
             curved = false;
             continue;
@@ -115,15 +154,20 @@ pub(crate) fn maximise(
                 trial[v as usize][k] += step.direction[3 * s + k];
             }
         }
-        let reached = judge(problem, &trial, cells.worst + step.promised + SEEN);
-        let gain = reached.worst - cells.worst;
-        if std::env::var("DBG").is_ok() {
-            eprintln!("{iterations} value {:.9} radius {radius:.2e} promised {:.2e} gain {gain:.2e} rows {} curved {curved}", cells.worst, step.promised, rows.len());
-        }
+        let trial_cells = match goal {
+            Goal::ScaledJacobian { .. } => judge(problem, &trial, value + step.promised + SEEN),
+            Goal::Condition { floor } => judge(problem, &trial, floor + SEEN),
+        };
+        let reached = merit(problem, &trial, &trial_cells, goal);
+        let gain = reached - value;
+        context.report("optimise", iterations as u64, Some(limits.iterations as u64), || {
+            format!("{:?} worst {value:.6}", goal)
+        });
         multipliers = step.multipliers;
         if gain > 0.0 {
             *points = trial;
-            cells = reached;
+            cells = trial_cells;
+            value = reached;
             rejected = 0;
         } else {
             rejected += 1;
@@ -137,7 +181,7 @@ pub(crate) fn maximise(
             radius = (2.0 * radius).min(1.0);
         }
     }
-    MaxMin { value: cells.worst, iterations, stopped }
+    Climb { scaled_jacobian: cells.worst, iterations, stopped }
 }
 
 /// Per variable: how far its vertex may move at radius 1, its shortest edge.
@@ -159,27 +203,42 @@ fn reach(problem: &Problem, points: &[Vector]) -> Vec<f64> {
         .collect()
 }
 
-fn linearise(problem: &Problem, points: &[Vector], cells: &Cells, limit: f64) -> Vec<Row> {
+fn linearise(problem: &Problem, points: &[Vector], cells: &Cells, goal: Goal, value: f64, band: f64) -> Vec<Row> {
+    let scaled_limit = match goal {
+        Goal::ScaledJacobian { .. } => value + band,
+        Goal::Condition { floor } => floor + band,
+    };
     let mut rows = Vec::new();
+    let mut push = |place, objective, value, by_column: [Vector; 3], weights: &[[f64; 3]; 8]| {
+        let mut gradient = [[0.0; 3]; 8];
+        for (g, w) in gradient.iter_mut().zip(weights) {
+            for d in 0..3 {
+                for k in 0..3 {
+                    g[k] += w[d] * by_column[d][k];
+                }
+            }
+        }
+        rows.push(Row { place, objective, value, gradient });
+    };
     for (hex, (worst, inner)) in cells.each.iter().enumerate() {
         let p = problem.corners_of(hex, points);
         // The inner points move with the cell's minimum, so each step takes the ones seen last.
-        let near = if *worst <= limit { inner.as_slice() } else { &[] };
-        for at in POSITIONS.map(|p| p.map(f64::from)).iter().chain(near) {
-            let weights = weights_at(*at);
-            let Some((value, by_column)) = scaled_with_gradient(&columns(&p, &weights)) else { continue };
-            if value > limit {
-                continue;
+        let near = if *worst <= scaled_limit { inner.as_slice() } else { &[] };
+        for (n, at) in corner_points().chain(near.iter().copied()).enumerate() {
+            let weights = weights_at(at);
+            let c = columns(&p, &weights);
+            let place = Place { hex, at };
+            if let Some((s, gradient)) = scaled_with_gradient(&c).filter(|(s, _)| *s <= scaled_limit) {
+                push(place, matches!(goal, Goal::ScaledJacobian { .. }), s, gradient, &weights);
             }
-            let mut gradient = [[0.0; 3]; 8];
-            for (g, w) in gradient.iter_mut().zip(&weights) {
-                for d in 0..3 {
-                    for k in 0..3 {
-                        g[k] += w[d] * by_column[d][k];
-                    }
-                }
+            if let Goal::Condition { .. } = goal
+                && n < 8
+                && let Some((log, gradient)) = log_condition_with_gradient(&c)
+                // Condition numbers within a factor e of the worst.
+                && -log <= value + 1.0
+            {
+                push(place, true, -log, gradient.map(|g| g.map(|x| -x)), &weights);
             }
-            rows.push(Row { place: Place { hex, at: *at }, value, gradient });
         }
     }
     rows
@@ -188,14 +247,17 @@ fn linearise(problem: &Problem, points: &[Vector], cells: &Cells, limit: f64) ->
 struct Step {
     direction: Vec<f64>,
     promised: f64,
-    /// The rows that hold the step, with their multipliers.
+    /// The scaled Jacobian rows that hold the step, with their multipliers.
     multipliers: Vec<(Place, f64)>,
 }
 
+#[allow(clippy::too_many_arguments)] // one call site; a struct would only rename them
 fn solve(
     problem: &Problem,
     points: &[Vector],
     rows: &[Row],
+    goal: Goal,
+    value: f64,
     reach: &[f64],
     radius: f64,
     curvature: &[(Place, f64)],
@@ -205,8 +267,7 @@ fn solve(
     let mut cost = vec![0.0; t + 1];
     cost[t] = -1.0;
     let mut program = Program::new(cost);
-    let worst = rows.iter().map(|r| r.value).fold(f64::INFINITY, f64::min);
-    // Variables: d_v / (radius * reach_v) in [-1, 1], and t - worst.
+    // Variables: d_v / (radius * reach_v) in [-1, 1], and t - value.
     let coefficients = |hex: usize, gradient: &[Vector; 8], sign: f64| {
         let mut out = Vec::with_capacity(25);
         for (corner, g) in gradient.iter().enumerate() {
@@ -219,66 +280,79 @@ fn solve(
     };
     for row in rows {
         let mut c = coefficients(row.place.hex, &row.gradient, -1.0);
-        c.push((t, 1.0));
-        program.row(c, row.value - worst);
+        if row.objective {
+            c.push((t, 1.0));
+            program.row(c, row.value - value);
+        } else if let Goal::Condition { floor } = goal {
+            // The step must not be refused for a rounding error of the floor.
+            program.row(c, (row.value - floor - 1e-9).max(0.0));
+        }
     }
-    let n_value_rows = program.n_rows();
+    let n_rows = program.n_rows();
     for i in 0..t {
         program.row([(i, 1.0)], 1.0);
         program.row([(i, -1.0)], 1.0);
     }
     keep_positive(problem, points, rows, &mut program, &coefficients);
     let mut model = Vec::new();
-    for &(Place { hex, at }, multiplier) in curvature {
-        let weights = &weights_at(at);
-        let c = columns(&problem.corners_of(hex, points), weights);
-        if !(scaled(&c) > -1.0) {
-            continue;
-        }
-        let h = positive_part(&hessian(&c).map(|r| r.map(|x| -multiplier * x)));
-        for a in 0..8 {
-            let sa = problem.slot[problem.hexes[hex][a] as usize] as usize;
-            for b in 0..8 {
-                let sb = problem.slot[problem.hexes[hex][b] as usize] as usize;
-                if sa >= n || sb >= n || weights[a] == [0.0; 3] || weights[b] == [0.0; 3] {
-                    continue;
-                }
-                for i in 0..3 {
-                    for j in 0..3 {
-                        let (row, column) = (3 * sa + i, 3 * sb + j);
-                        if row > column {
-                            continue;
+    for &(place, multiplier) in curvature {
+        bend(problem, points, place, multiplier, |i, j, value| {
+            let value = value * radius * radius * reach[i / 3] * reach[j / 3];
+            program.curvature(i, j, value);
+            model.push((i, j, value));
+        });
+    }
+    let solution = program.solve()?;
+    let bent: f64 = model
+        .iter()
+        .map(|&(i, j, v)| (if i == j { 0.5 } else { 1.0 }) * v * solution.point[i] * solution.point[j])
+        .sum();
+    let multipliers = rows
+        .iter()
+        .zip(&solution.multipliers[..n_rows])
+        .filter(|(row, m)| **m > 1e-7 && (row.objective == matches!(goal, Goal::ScaledJacobian { .. })))
+        .map(|(row, &m)| (row.place, m))
+        .collect();
+    let direction = (0..t).map(|i| solution.point[i].clamp(-1.0, 1.0) * radius * reach[i / 3]).collect();
+    Some(Step { direction, promised: solution.point[t] - bent, multipliers })
+}
+
+/// Gives the entries (i <= j) of minus the Hessian of the scaled Jacobian at a place, times its multiplier, made convex.
+fn bend(problem: &Problem, points: &[Vector], place: Place, multiplier: f64, mut entry: impl FnMut(usize, usize, f64)) {
+    use crate::curvature::{hessian, positive_part};
+    let n = problem.free.len();
+    let hex = &problem.hexes[place.hex];
+    let weights = weights_at(place.at);
+    let c = columns(&problem.corners_of(place.hex, points), &weights);
+    if scaled(&c) <= -1.0 {
+        return;
+    }
+    let h = positive_part(&hessian(&c).map(|r| r.map(|x| -multiplier * x)));
+    let movable: Vec<(usize, usize)> = (0..8)
+        .filter(|&corner| weights[corner] != [0.0; 3])
+        .map(|corner| (corner, problem.slot[hex[corner] as usize] as usize))
+        .filter(|&(_, s)| s < n)
+        .collect();
+    for &(a, sa) in &movable {
+        for &(b, sb) in &movable {
+            for i in 0..3 {
+                for j in 0..3 {
+                    if 3 * sa + i > 3 * sb + j {
+                        continue;
+                    }
+                    let mut sum = 0.0;
+                    for d in 0..3 {
+                        for e in 0..3 {
+                            sum += weights[a][d] * weights[b][e] * h[3 * d + i][3 * e + j];
                         }
-                        let mut sum = 0.0;
-                        for d in 0..3 {
-                            for e in 0..3 {
-                                sum += weights[a][d] * weights[b][e] * h[3 * d + i][3 * e + j];
-                            }
-                        }
-                        let value = sum * radius * radius * reach[sa] * reach[sb];
-                        if value != 0.0 {
-                            program.curvature(row, column, value);
-                            model.push((row, column, value));
-                        }
+                    }
+                    if sum != 0.0 {
+                        entry(3 * sa + i, 3 * sb + j, sum);
                     }
                 }
             }
         }
     }
-    let solution = program.solve()?;
-    let bend: f64 = model
-        .iter()
-        .map(|&(i, j, v)| (if i == j { 0.5 } else { 1.0 }) * v * solution.point[i] * solution.point[j])
-        .sum();
-    let promised = solution.point[t] - bend;
-    let multipliers = rows
-        .iter()
-        .zip(&solution.multipliers[..n_value_rows])
-        .filter(|(_, m)| **m > 1e-7)
-        .map(|(r, &m)| (r.place, m))
-        .collect();
-    let direction = (0..t).map(|i| solution.point[i].clamp(-1.0, 1.0) * radius * reach[i / 3]).collect();
-    Some(Step { direction, promised, multipliers })
 }
 
 /// Rows that keep small Bernstein coefficients of the cells in the program from reaching zero.
@@ -296,19 +370,19 @@ fn keep_positive(
         let (b, n) = (frame.bernstein(), frame.lengths());
         for c in 0..27 {
             let ratio = b[c] / n[c];
-            if !(ratio < 0.05) || c / 9 != 1 && c / 3 % 3 != 1 && c % 3 != 1 {
+            let is_corner = c / 9 != 1 && c / 3 % 3 != 1 && c % 3 != 1;
+            if is_corner || ratio.is_nan() || ratio >= 0.05 {
                 continue;
             }
             let mut edge_gradient = [[[0.0; 3]; 4]; 3];
             let mut count = 0.0;
             for m in MIXED.iter().filter(|m| m.coefficient == c) {
                 count += 1.0;
-                let [x, y, z] = m.edges;
-                let e = [frame.0[0][x], frame.0[1][y], frame.0[2][z]];
-                for (d, i) in [x, y, z].into_iter().enumerate() {
+                let e: [Vector; 3] = std::array::from_fn(|d| frame.0[d][m.edges[d]]);
+                for d in 0..3 {
                     let normal = cross(e[(d + 1) % 3], e[(d + 2) % 3]);
                     for k in 0..3 {
-                        edge_gradient[d][i][k] += normal[k];
+                        edge_gradient[d][m.edges[d]][k] += normal[k];
                     }
                 }
             }

@@ -1,0 +1,359 @@
+//! The pipeline: start, untangle, optimise, over several starts, and the report.
+//!
+//! Work is done in coordinates centred on the boundary and scaled by a power of two, so that sizes of 1e-300 and 1e300
+//! are the same problem; boundary vertices are returned with the bits they came with, and the result is judged at the points
+//! as returned. Starts run in batches whose sizes do not depend on the threads, and the best start is chosen by value and
+//! then by number, so the result does not either.
+
+use crate::error::EmbedError;
+use crate::jacobian::{Frame, columns, weights_at};
+use crate::local;
+use crate::maxmin::{self, Goal};
+use crate::measure::log_condition;
+use crate::problem::Problem;
+use crate::random::Random;
+use crate::report::{CellQuality, EmbedReport, Embedding, Objective, Options};
+use crate::star::{self, StarBound};
+use crate::tutte;
+use crate::untangle::{UntangleLimits, bad_cells, untangle};
+use crate::vector::{Vector, norm, sub};
+use hexfill_mesh::cube::{EDGES, POSITIONS};
+use hexfill_mesh::{Context, HexId, HexMesh, Offenders, StopReason, VertexId};
+use rayon::prelude::*;
+
+/// Starts tried at once after the first.
+const BATCH: u32 = 4;
+
+/// A balanced result keeps this share of the optimum.
+const BALANCED_SHARE: f64 = 0.95;
+
+/// Finds coordinates for `mesh`.
+///
+/// `boundary_points[v]` is the position of vertex v, for every v on a boundary quad; these vertices are returned bit for bit.
+/// Entries of other vertices are not read. `start`, if given (one point per vertex), is the first start; else the first
+/// start is the graph-Laplacian one with unit weights. The result is valid only if the report says so.
+///
+/// Deterministic by the options and [`Context::seed`], for any number of threads, as long as no time limit cuts it short.
+///
+/// # Errors
+/// [`EmbedError`] if the request makes no sense. Finding nothing valid is not an error.
+pub fn embed(
+    mesh: &HexMesh,
+    boundary_points: &[[f64; 3]],
+    start: Option<&[[f64; 3]]>,
+    options: &Options,
+    context: &Context<'_>,
+) -> Result<Embedding, EmbedError> {
+    let frame = Normal::new(mesh, boundary_points, start)?;
+    if options.threads == 0 {
+        return Ok(frame.run(mesh, start, options, context));
+    }
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(options.threads)
+        .build()
+        .map_err(|_| EmbedError::Threads { given: options.threads })?;
+    Ok(pool.install(|| frame.run(mesh, start, options, context)))
+}
+
+/// The graph-Laplacian (Tutte) start: every interior vertex at the mean of its neighbours, boundary vertices as given.
+///
+/// # Errors
+/// As [`embed`].
+pub fn tutte_start(mesh: &HexMesh, boundary_points: &[[f64; 3]]) -> Result<Vec<[f64; 3]>, EmbedError> {
+    let normal = Normal::new(mesh, boundary_points, None)?;
+    let mut points = normal.points.clone();
+    tutte::place(&normal.problem, &mut points, 0.0, &mut Random::new(0, 0));
+    Ok(normal.restore(&points))
+}
+
+/// The vertex-star upper bounds of all boundary vertices with a corner that has at most one free edge, ascending by vertex.
+///
+/// The worst scaled Jacobian of any embedding with this boundary is at most the smallest of them.
+///
+/// # Errors
+/// As [`embed`].
+pub fn star_bounds(mesh: &HexMesh, boundary_points: &[[f64; 3]]) -> Result<Vec<StarBound>, EmbedError> {
+    let normal = Normal::new(mesh, boundary_points, None)?;
+    Ok(star::bounds(&normal.problem, &normal.points))
+}
+
+/// The problem in normal coordinates, and the way back.
+struct Normal {
+    problem: Problem,
+    /// Fixed points in normal coordinates; free ones at the origin.
+    points: Vec<Vector>,
+    /// What was given, per vertex; free vertices at the centre.
+    given: Vec<Vector>,
+    centre: Vector,
+    /// A power of two.
+    scale: f64,
+}
+
+impl Normal {
+    fn new(mesh: &HexMesh, boundary_points: &[Vector], start: Option<&[Vector]>) -> Result<Self, EmbedError> {
+        const LEAST_EXTENT: f64 = 1e-305;
+        if mesh.n_hexes() == 0 {
+            return Err(EmbedError::NoHexes);
+        }
+        let fixed = mesh.boundary_vertices();
+        let boundary: Vec<usize> = (0..fixed.len()).filter(|&v| fixed[v]).collect();
+        let Some(&last) = boundary.last() else { return Err(EmbedError::NoBoundary) };
+        let missing: Offenders<VertexId> =
+            boundary.iter().filter(|&&v| v >= boundary_points.len()).map(|&v| VertexId::new(v)).collect();
+        if !missing.is_empty() {
+            let given = boundary_points.len();
+            return Err(EmbedError::MissingPositions { vertices: missing, given, limit: last });
+        }
+        let finite = |p: Vector| p.iter().all(|x| x.is_finite());
+        let mut not_finite: Offenders<VertexId> =
+            boundary.iter().filter(|&&v| !finite(boundary_points[v])).map(|&v| VertexId::new(v)).collect();
+        if let Some(start) = start {
+            if start.len() != mesh.n_vertices() {
+                return Err(EmbedError::StartLength { given: start.len(), limit: mesh.n_vertices() });
+            }
+            (0..start.len())
+                .filter(|&v| !fixed[v] && !finite(start[v]))
+                .for_each(|v| not_finite.push(VertexId::new(v)));
+        }
+        if !not_finite.is_empty() {
+            return Err(EmbedError::NotFinite { vertices: not_finite });
+        }
+        // Halves, so that the span of the largest doubles does not overflow.
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for &v in &boundary {
+            for k in 0..3 {
+                low[k] = low[k].min(0.5 * boundary_points[v][k]);
+                high[k] = high[k].max(0.5 * boundary_points[v][k]);
+            }
+        }
+        let half = (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max);
+        if 2.0 * half < LEAST_EXTENT {
+            return Err(EmbedError::NoExtent { given: 2.0 * half, limit: LEAST_EXTENT });
+        }
+        let scale = 2f64.powi(half.log2().round() as i32);
+        let centre: Vector = std::array::from_fn(|k| low[k] + high[k]);
+        let mut given = vec![centre; mesh.n_vertices()];
+        for (v, point) in given.iter_mut().enumerate() {
+            if fixed[v] {
+                *point = boundary_points[v];
+            }
+        }
+        let problem = Problem::new(mesh.n_vertices(), mesh.hexes_raw(), &fixed);
+        let points = given.iter().map(|&p| normalise(p, centre, scale)).collect();
+        Ok(Self { problem, points, given, centre, scale })
+    }
+
+    fn restore(&self, points: &[Vector]) -> Vec<Vector> {
+        let mut out = self.given.clone();
+        for &v in &self.problem.free {
+            let p = points[v as usize];
+            out[v as usize] = std::array::from_fn(|k| self.centre[k] + self.scale * p[k]);
+        }
+        out
+    }
+
+    fn run(&self, mesh: &HexMesh, start: Option<&[Vector]>, options: &Options, context: &Context<'_>) -> Embedding {
+        let problem = &self.problem;
+        let mut stars = star::bounds(problem, &self.points);
+        stars.sort_by(|a, b| a.bound.total_cmp(&b.bound).then(a.vertex.cmp(&b.vertex)));
+        let upper_bound = stars.first().map_or(1.0, |s| s.bound).min(1.0);
+        stars.truncate(10);
+        let start: Option<Vec<Vector>> = start.map(|s| {
+            let mut points = self.points.clone();
+            for &v in &problem.free {
+                points[v as usize] = normalise(s[v as usize], self.centre, self.scale);
+            }
+            points
+        });
+        let search = Search { normal: self, start: start.as_deref(), upper_bound, options };
+        let outcome = search.best(context);
+        let points = self.restore(&outcome.points);
+        let judged: Vec<Vector> = points.iter().map(|&p| normalise(p, self.centre, self.scale)).collect();
+        let mut cells: Vec<(f64, f64, f64)> = vec![(0.0, 0.0, 0.0); problem.hexes.len()];
+        problem.map_hexes(&mut cells, |h| {
+            let p = problem.corners_of(h, &judged);
+            let worst = Frame::new(&p).worst(1.0, 1e-9, 2000);
+            let log = POSITIONS.iter().map(|at| log_condition(&columns(&p, &weights_at(at.map(f64::from)))));
+            (worst.lower, worst.upper, log.fold(0.0, f64::max))
+        });
+        let bad = bad_cells(problem, &judged);
+        for &h in &bad {
+            cells[h].1 = cells[h].1.min(0.0);
+        }
+        let mut order: Vec<usize> = (0..cells.len()).collect();
+        order.sort_by(|&a, &b| cells[a].1.total_cmp(&cells[b].1).then(a.cmp(&b)));
+        order.truncate(10);
+        let shortest = problem
+            .hexes
+            .iter()
+            .flat_map(|h| EDGES.map(|[i, j]| norm(sub(judged[h[i] as usize], judged[h[j] as usize]))))
+            .fold(f64::INFINITY, f64::min);
+        debug_assert_eq!(points.len(), mesh.n_vertices());
+        let report = EmbedReport {
+            objective: options.objective,
+            valid_in_floating_point: bad.is_empty(),
+            n_invalid: bad.len(),
+            starts: outcome.starts,
+            valid_starts: outcome.valid_starts,
+            best_start: outcome.best_start,
+            scaled_jacobian: cells[order[0]].1,
+            scaled_jacobian_bound: cells.iter().map(|c| c.0).fold(f64::INFINITY, f64::min),
+            condition: cells.iter().map(|c| c.2).fold(0.0, f64::max).exp(),
+            shortest_edge: shortest * self.scale,
+            worst_cells: order
+                .iter()
+                .map(|&h| CellQuality { hex: HexId::new(h), scaled_jacobian: cells[h].1 })
+                .collect(),
+            upper_bound,
+            star_bounds: stars,
+            stop: outcome.stop,
+        };
+        Embedding { points, report }
+    }
+}
+
+fn normalise(p: Vector, centre: Vector, scale: f64) -> Vector {
+    // Halves first: the difference of two large doubles may overflow.
+    std::array::from_fn(|k| 2.0 * ((0.5 * p[k] - 0.5 * centre[k]) / scale))
+}
+
+struct Search<'a> {
+    normal: &'a Normal,
+    start: Option<&'a [Vector]>,
+    upper_bound: f64,
+    options: &'a Options,
+}
+
+/// One start, worked out.
+struct Candidate {
+    number: u32,
+    points: Vec<Vector>,
+    n_bad: usize,
+    /// The worst scaled Jacobian.
+    value: f64,
+    stopped: Option<StopReason>,
+}
+
+struct Outcome {
+    points: Vec<Vector>,
+    starts: u32,
+    valid_starts: u32,
+    best_start: u32,
+    stop: StopReason,
+}
+
+impl Search<'_> {
+    fn best(&self, context: &Context<'_>) -> Outcome {
+        let n_hexes = self.normal.problem.hexes.len();
+        let first_valid_is_enough =
+            self.options.objective == Objective::UntangleOnly || self.options.starts == 0 && n_hexes > 400;
+        let starts = match (self.options.starts, n_hexes) {
+            (0, 0..=100) => 8,
+            (0, _) => 4,
+            (n, _) => n,
+        };
+        let mut found: Vec<Candidate> = Vec::new();
+        let mut stop = StopReason::Finished;
+        while (found.len() as u32) < starts {
+            let from = found.len() as u32;
+            let batch = if from == 0 { 1 } else { BATCH.min(starts - from) };
+            // Progress comes from the driving thread: only a lone start reports in detail.
+            let inner = if batch == 1 { *context } else { Context { progress: None, ..*context } };
+            let mut new: Vec<Candidate> =
+                (from..from + batch).into_par_iter().map(|number| self.one(number, &inner)).collect();
+            found.append(&mut new);
+            let best = found.iter().map(|c| c.value).fold(f64::NEG_INFINITY, f64::max);
+            context.report("starts", found.len() as u64, Some(u64::from(starts)), || format!("best {best:.6}"));
+            if let Some(reason) = found.iter().find_map(|c| c.stopped) {
+                stop = reason;
+                break;
+            }
+            let valid = found.iter().any(|c| c.n_bad == 0);
+            if valid && (first_valid_is_enough || self.is_optimal(best)) {
+                break;
+            }
+        }
+        let starts = found.len() as u32;
+        let valid_starts = found.iter().filter(|c| c.n_bad == 0).count() as u32;
+        found.sort_by(|a, b| {
+            a.n_bad.cmp(&b.n_bad).then(b.value.total_cmp(&a.value)).then(a.number.cmp(&b.number))
+        });
+        if self.options.objective == Objective::Balanced && found[0].n_bad == 0 && stop == StopReason::Finished {
+            stop = self.balance(&mut found, context);
+        }
+        let best = found.swap_remove(0);
+        Outcome { points: best.points, starts, valid_starts, best_start: best.number, stop }
+    }
+
+    fn is_optimal(&self, value: f64) -> bool {
+        value >= self.upper_bound - 1e-8
+    }
+
+    /// Works out one start.
+    fn one(&self, number: u32, context: &Context<'_>) -> Candidate {
+        let problem = &self.normal.problem;
+        let mut points = self.normal.points.clone();
+        match self.start {
+            Some(start) if number == 0 => points.copy_from_slice(start),
+            given => {
+                let plain = number == u32::from(given.is_some());
+                let mut random = Random::new(context.seed, u64::from(number));
+                tutte::place(problem, &mut points, if plain { 0.0 } else { 1.0 }, &mut random);
+            }
+        }
+        let n_hexes = problem.hexes.len();
+        let mut stopped;
+        let mut bad;
+        if n_hexes > self.options.local_limit || number == 0 && self.start.is_some() {
+            (bad, stopped) = local::untangle_bad(problem, &mut points, context);
+        } else {
+            let limits = UntangleLimits { rounds: 100, iterations: 200, extra_rounds: 0 };
+            stopped = untangle(problem, &mut points, limits, context).stopped;
+            bad = bad_cells(problem, &points);
+        }
+        let climbs = self.options.objective != Objective::UntangleOnly && bad.is_empty();
+        let target = self.upper_bound - 1e-9;
+        let mut value = f64::NEG_INFINITY;
+        if climbs && stopped.is_none() {
+            if n_hexes <= self.options.whole_limit {
+                let limits = maxmin::Limits { iterations: self.options.programs, band: 0.3, tolerance: 1e-9 };
+                let goal = Goal::ScaledJacobian { target };
+                let climbed = maxmin::climb(problem, &mut points, goal, limits, context);
+                stopped = climbed.stopped;
+                value = climbed.scaled_jacobian;
+            } else {
+                stopped = local::climb_worst(problem, &mut points, target, self.options.programs, context);
+            }
+            bad = bad_cells(problem, &points);
+        }
+        if value == f64::NEG_INFINITY {
+            value = maxmin::judge(problem, &points, 1.0).worst;
+        }
+        Candidate { number, points, n_bad: bad.len(), value, stopped }
+    }
+
+    /// Lowers the condition numbers of the good candidates and puts the best first.
+    fn balance(&self, found: &mut Vec<Candidate>, context: &Context<'_>) -> StopReason {
+        let problem = &self.normal.problem;
+        let floor = BALANCED_SHARE * found[0].value;
+        found.retain(|c| c.n_bad == 0 && c.value > floor);
+        found.truncate(BATCH as usize);
+        let quiet = Context { progress: None, ..*context };
+        let limits = maxmin::Limits { iterations: self.options.programs, band: 0.1, tolerance: 1e-4 };
+        let stops: Vec<Option<StopReason>> = found
+            .par_iter_mut()
+            .map(|c| maxmin::climb(problem, &mut c.points, Goal::Condition { floor }, limits, &quiet).stopped)
+            .collect();
+        let condition = |c: &Candidate| {
+            let mut each = vec![0.0; problem.hexes.len()];
+            problem.map_hexes(&mut each, |h| {
+                let p = problem.corners_of(h, &c.points);
+                let logs = POSITIONS.iter().map(|at| log_condition(&columns(&p, &weights_at(at.map(f64::from)))));
+                logs.fold(0.0, f64::max)
+            });
+            each.into_iter().fold(0.0, f64::max)
+        };
+        found.sort_by(|a, b| condition(a).total_cmp(&condition(b)).then(a.number.cmp(&b.number)));
+        stops.into_iter().flatten().next().unwrap_or(StopReason::Finished)
+    }
+}

@@ -1,0 +1,138 @@
+//! Large meshes: move only what is bad, patch by patch, many patches at a time.
+//!
+//! Cells that fail are seeds of patches ([`crate::patch`]); each patch is untangled alone with its surroundings held.
+//! Patches grow from round to round until nothing fails, and the whole mesh is the last patch. Quality is then raised the
+//! same way: the worst cells are seeds, and each patch climbs with its own linear programs.
+//! Results of a round are written back in the order of the patches, whatever the threads did.
+
+use crate::maxmin::{self, Goal};
+use crate::patch::{Incidence, Patch, patches};
+use crate::problem::Problem;
+use crate::untangle::{UntangleLimits, bad_cells, untangle};
+use crate::vector::Vector;
+use hexfill_mesh::{Context, StopReason};
+use rayon::prelude::*;
+
+/// Cells in a patch at most when it is to climb: the linear programs of larger ones are slow.
+const CLIMB_CELLS: usize = 600;
+
+/// Untangles where needed. Returns the cells still bad, ascending, and why it stopped.
+pub(crate) fn untangle_bad(
+    problem: &Problem,
+    points: &mut Vec<Vector>,
+    context: &Context<'_>,
+) -> (Vec<usize>, Option<StopReason>) {
+    let incidence = Incidence::new(problem);
+    let mut bad = bad_cells(problem, points);
+    for rings in [1usize, 2, 3, 4, 6, 8, 12] {
+        if bad.is_empty() || context.stop().is_some() {
+            return (bad, context.stop());
+        }
+        let parts = patches(problem, &incidence, &bad, rings);
+        context.report("untangle patches", rings as u64, None, || {
+            format!("{} bad cells, {} patches of {rings} rings", bad.len(), parts.len())
+        });
+        if parts.iter().any(|p| 2 * p.problem.hexes.len() > problem.hexes.len()) {
+            break;
+        }
+        each(&parts, points, context, |part, points, context| {
+            let limits = UntangleLimits { rounds: 60, iterations: 100, extra_rounds: 1 };
+            untangle(&part.problem, points, limits, context);
+        });
+        bad = bad_cells(problem, points);
+    }
+    if !bad.is_empty() && context.stop().is_none() {
+        let limits = UntangleLimits { rounds: 100, iterations: 200, extra_rounds: 0 };
+        let mut trial = points.clone();
+        let done = untangle(problem, &mut trial, limits, context);
+        let still = bad_cells(problem, &trial);
+        if still.len() < bad.len() {
+            *points = trial;
+            bad = still;
+        }
+        return (bad, done.stopped);
+    }
+    (bad, None)
+}
+
+/// Solves every patch from the same `points` and writes a result back if it has fewer bad cells, or as many and a
+/// better worst cell.
+fn each(
+    parts: &[Patch],
+    points: &mut [Vector],
+    context: &Context<'_>,
+    work: impl Fn(&Patch, &mut Vec<Vector>, &Context<'_>) + Sync,
+) {
+    // Progress is reported by the thread that drives the work only.
+    let (quiet, before) = (Context { progress: None, ..*context }, &*points);
+    let results: Vec<Option<Vec<Vector>>> = parts
+        .par_iter()
+        .map(|part| {
+            let old = part.points(before);
+            let mut new = old.clone();
+            work(part, &mut new, &quiet);
+            let rank = |p: &[Vector]| {
+                let bad = bad_cells(&part.problem, p).len();
+                (bad, -maxmin::judge(&part.problem, p, 1.0).worst)
+            };
+            let (a, b) = (rank(&new), rank(&old));
+            (a.0 < b.0 || a.0 == b.0 && a.1 < b.1).then_some(new)
+        })
+        .collect();
+    for (part, result) in parts.iter().zip(results) {
+        if let Some(result) = result {
+            part.write_back(&result, points);
+        }
+    }
+}
+
+/// Raises the worst cells patch by patch, for meshes too large for one program. All cells must be valid.
+pub(crate) fn climb_worst(
+    problem: &Problem,
+    points: &mut Vec<Vector>,
+    target: f64,
+    rounds: usize,
+    context: &Context<'_>,
+) -> Option<StopReason> {
+    let incidence = Incidence::new(problem);
+    let mut stale = 0;
+    for round in 0..rounds {
+        if let Some(reason) = context.stop() {
+            return Some(reason);
+        }
+        let cells = maxmin::judge(problem, points, 1.0);
+        if cells.worst >= target {
+            return None;
+        }
+        // The worst cells: those below twice the worst, or the worst few, while the patches stay small.
+        let mut order: Vec<usize> = (0..problem.hexes.len()).collect();
+        order.sort_by(|&a, &b| cells.each[a].0.total_cmp(&cells.each[b].0).then(a.cmp(&b)));
+        let limit = (1.5 * cells.worst).max(cells.worst + 0.02).min(target);
+        let mut seeds = order.iter().take_while(|&&h| cells.each[h].0 <= limit).count().max(1);
+        let rings = 1 + stale;
+        let parts = loop {
+            let parts = patches(problem, &incidence, &order[..seeds], rings);
+            if seeds == 1 || parts.iter().all(|p| p.problem.hexes.len() <= CLIMB_CELLS) {
+                break parts;
+            }
+            seeds = seeds.div_ceil(2);
+        };
+        context.report("optimise patches", round as u64, Some(rounds as u64), || {
+            format!("worst {:.6}, {seeds} cells in {} patches", cells.worst, parts.len())
+        });
+        each(&parts, points, context, |part, points, context| {
+            let limits = maxmin::Limits { iterations: 25, band: 0.2, tolerance: 1e-6 };
+            maxmin::climb(&part.problem, points, Goal::ScaledJacobian { target }, limits, context);
+        });
+        let after = maxmin::judge(problem, points, 1.0).worst;
+        if after < cells.worst + 1e-3 * cells.worst.abs() {
+            stale += 1;
+            if stale > 2 {
+                return None;
+            }
+        } else {
+            stale = 0;
+        }
+    }
+    None
+}
