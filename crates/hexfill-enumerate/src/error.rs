@@ -17,13 +17,11 @@ pub enum EnumerateError {
         why: String,
     },
     /// A text that is not a boundary key.
-    #[error("{given:?} is not a boundary key: {why} (an example of a key: 8x[8,16] 8x[16,16])")]
-    BadKey {
-        /// The text.
-        given: String,
-        /// What is wrong.
-        why: String,
-    },
+    #[error(transparent)]
+    Key(#[from] hexfill_mesh::KeyError),
+    /// A text that is not a signature.
+    #[error(transparent)]
+    Signature(#[from] hexfill_mesh::SignatureError),
     /// A code that is not a complex.
     #[error("{given:?} is not a code: {why}")]
     BadCode {

@@ -10,8 +10,8 @@ use crate::complex::Complex;
 use crate::error::EnumerateError;
 use crate::hashset::{HashKey, ShardedSet};
 use crate::params::Params;
-use crate::shape::Selection;
 use crate::tally::{Counter, Tally};
+use crate::targets::{Found, Wanted};
 use hexfill_mesh::Context;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -40,8 +40,8 @@ pub struct Level {
     pub tally: Tally,
     /// Codes of the classes to be extended (all without a filter), sorted. Empty for the last level unless asked for.
     pub codes: Vec<Code>,
-    /// Codes of the selected classes of the last level, sorted.
-    pub selected: Vec<Code>,
+    /// What was listed, sorted.
+    pub found: Found,
     /// Bytes held by the set of hashes at the end.
     pub set_bytes: u64,
 }
@@ -51,8 +51,8 @@ pub struct Level {
 pub struct Keep<'a> {
     /// The codes of the classes that go on to the next level.
     pub codes: bool,
-    /// The codes of selected classes.
-    pub selected: Option<&'a Selection>,
+    /// What to list.
+    pub wanted: Wanted<'a>,
 }
 
 /// Level 1: one cube.
@@ -61,14 +61,11 @@ pub fn first_level(params: &Params, keep: Keep<'_>) -> Level {
     let labelling = canonical(&cube);
     let mut counter = Counter::new(params.nonorientable);
     let (boundary, shape) = counter.class(&cube, &labelling, labelling.code.hash128());
-    let mut selected = Vec::new();
-    if keep.selected.is_some_and(|s| s.wants(&boundary, &shape)) {
-        counter.selected();
-        selected.push(labelling.code);
-    }
+    let mut found = Found::default();
+    found.look(&keep.wanted, &mut counter, &boundary, &shape, labelling.code);
     let codes =
         if keep.codes && params.extends(1, shape.chords) { vec![labelling.code] } else { Vec::new() };
-    Level { cubes: 1, tally: counter.finish(), codes, selected, set_bytes: 0 }
+    Level { cubes: 1, tally: counter.finish(), codes, found, set_bytes: 0 }
 }
 
 /// The level after `parents`, which are codes of one size.
@@ -96,14 +93,14 @@ pub fn next_level(
 pub fn all_levels(
     params: &Params,
     options: &LevelOptions,
-    selection: Option<&Selection>,
+    wanted: Wanted<'_>,
     keep_last: bool,
     ctx: &Context<'_>,
 ) -> Result<Vec<Level>, EnumerateError> {
     params.check()?;
     let keep = |n: usize| Keep {
         codes: n < params.cubes || keep_last,
-        selected: if n == params.cubes { selection } else { None },
+        wanted: if n == params.cubes { wanted } else { Wanted::default() },
     };
     let mut levels = vec![first_level(params, keep(1))];
     for n in 2..=params.cubes {
@@ -129,7 +126,7 @@ fn grow<K: HashKey>(
     let work = || -> Result<(), EnumerateError> {
         let mut counter = Counter::new(params.nonorientable);
         let mut codes = Vec::new();
-        let mut selected = Vec::new();
+        let mut found = Found::default();
         loop {
             let start = cursor.fetch_add(BLOCK, Ordering::Relaxed);
             if start >= parents.len() {
@@ -159,28 +156,25 @@ fn grow<K: HashKey>(
                     if keep.codes && params.extends(cubes, shape.chords) {
                         codes.push(labelling.code);
                     }
-                    if keep.selected.is_some_and(|s| s.wants(&boundary, &shape)) {
-                        counter.selected();
-                        selected.push(labelling.code);
-                    }
+                    found.look(&keep.wanted, &mut counter, &boundary, &shape, labelling.code);
                 });
             }
             ctx.report("level", (start + BLOCK).min(parents.len()) as u64, Some(parents.len() as u64), || {
                 format!("{cubes} cubes")
             });
         }
-        parts.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push((counter.finish(), codes, selected));
+        parts.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push((counter.finish(), codes, found));
         Ok(())
     };
     run_on(options.threads, &work)?;
-    let mut level = Level { cubes, tally: Tally::default(), codes: Vec::new(), selected: Vec::new(), set_bytes: set.bytes() };
-    for (tally, codes, selected) in parts.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner) {
+    let mut level = Level { cubes, tally: Tally::default(), codes: Vec::new(), found: Found::default(), set_bytes: set.bytes() };
+    for (tally, codes, found) in parts.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner) {
         level.tally.merge(&tally);
         level.codes.extend(codes);
-        level.selected.extend(selected);
+        level.found.merge(found);
     }
     level.codes.sort_unstable();
-    level.selected.sort_unstable();
+    level.found.sort();
     Ok(level)
 }
 

@@ -120,7 +120,7 @@ pub struct Selection {
     /// At most so many chords.
     pub max_chords: Option<u8>,
     /// Exactly this boundary key.
-    pub key: Option<crate::boundary::Key>,
+    pub key: Option<hexfill_mesh::Key>,
 }
 
 impl Selection {
@@ -134,7 +134,7 @@ impl Selection {
         self.boundary_quads.is_none_or(|(low, high)| (low..=high).contains(&boundary.n_quads()))
             && (!self.balls || shape.is_ball)
             && self.max_chords.is_none_or(|k| shape.chords <= k)
-            && self.key.as_ref().is_none_or(|key| key.n_quads() as usize == boundary.n_quads() && boundary.key() == *key)
+            && self.key.as_ref().is_none_or(|key| boundary.has_key(key))
     }
 
     /// The selection in words, for ledgers and trailers; empty for everything.

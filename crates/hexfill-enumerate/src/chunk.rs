@@ -1,0 +1,218 @@
+//! Work in chunks: "run chunk k of K" gives a record of counts that adds up with the others'.
+//!
+//! The tree of canonical augmentations is cut at one level into *nodes*, whose order is fixed by the parameters alone; chunk k
+//! of K has the nodes whose number is k modulo K, with all that is below them. So the chunks of any K partition the
+//! classes, and threads, job arrays and MPI ranks are drivers of one function, [`Plan::run`].
+
+use crate::augment::{Members, Walk, members};
+use crate::canonical::{Code, canonical};
+use crate::complex::Complex;
+use crate::error::EnumerateError;
+use crate::level::{LevelOptions, all_levels};
+use crate::params::{Params, Rule};
+use crate::tally::Tally;
+use crate::targets::{Found, Wanted};
+use hexfill_mesh::Context;
+use serde::{Deserialize, Serialize};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Chunk `index` of `of`.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug, Serialize, Deserialize)]
+pub struct Chunk {
+    /// Which, from 0.
+    pub index: usize,
+    /// Of how many.
+    pub of: usize,
+}
+
+/// The result of one chunk.
+#[derive(Clone, Debug)]
+pub struct ChunkResult {
+    /// Which chunk.
+    pub chunk: Chunk,
+    /// Its counts.
+    pub tally: Tally,
+    /// What was listed, in the order of the walk.
+    pub found: Found,
+    /// Processor time used, in nanoseconds; not part of the result proper.
+    pub cpu_nanoseconds: u64,
+}
+
+enum Nodes {
+    /// Rule `strict`: complexes of an early level and the orders of their groups.
+    Early(Vec<(Complex, u16)>),
+    /// Rule `weill`: the level before the last, and the same as a set.
+    Last(Vec<Code>, Members),
+}
+
+/// An enumeration prepared for being run in chunks.
+pub struct Plan {
+    params: Params,
+    nodes: Nodes,
+}
+
+impl std::fmt::Debug for Plan {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Plan").field("params", &self.params).field("nodes", &self.n_nodes()).finish_non_exhaustive()
+    }
+}
+
+impl Plan {
+    /// Prepares: for rule `strict` the classes of three cubes less (milliseconds), for rule `weill` the whole level before the
+    /// last, found by the level engine with `options`.
+    ///
+    /// # Errors
+    /// [`EnumerateError::BadParameters`] for parameters that do not go together: a filter under rule `strict` needs the level
+    /// engine. [`EnumerateError::Stopped`] if the context says so.
+    pub fn prepare(params: &Params, options: &LevelOptions, ctx: &Context<'_>) -> Result<Self, EnumerateError> {
+        params.check()?;
+        let before = Params { cubes: params.cubes.saturating_sub(1).max(1), ..*params };
+        let nodes = match params.rule {
+            Rule::Strict => {
+                if params.filter.is_some() {
+                    return Err(EnumerateError::BadParameters {
+                        why: "under rule strict the chord filter needs the level engine: a complex may choose a parent \
+                              that the filter drops"
+                            .into(),
+                    });
+                }
+                let split = params.cubes.saturating_sub(3).max(1);
+                let cube = Complex::cube();
+                let mut nodes = vec![(cube, canonical(&cube).automorphisms)];
+                let walk_params = Params { cubes: split, ..*params };
+                let mut walk = Walk::new(&walk_params, None, Wanted::default());
+                for _ in 1..split {
+                    let mut next = Vec::new();
+                    for (parent, automorphisms) in &nodes {
+                        if let Some(reason) = ctx.stop() {
+                            return Err(EnumerateError::Stopped { reason });
+                        }
+                        next.extend(walk.children(parent, *automorphisms));
+                    }
+                    nodes = next;
+                }
+                Nodes::Early(nodes)
+            }
+            Rule::Weill => {
+                let mut levels = all_levels(&before, options, Wanted::default(), true, ctx)?;
+                let codes = levels.pop().map(|level| level.codes).unwrap_or_default();
+                let set = members(&codes);
+                Nodes::Last(codes, set)
+            }
+        };
+        Ok(Self { params: *params, nodes })
+    }
+
+    /// The parameters.
+    pub fn params(&self) -> &Params {
+        &self.params
+    }
+
+    /// Number of nodes: chunks beyond it are empty.
+    pub fn n_nodes(&self) -> usize {
+        match &self.nodes {
+            Nodes::Early(nodes) => nodes.len(),
+            Nodes::Last(codes, _) => codes.len(),
+        }
+    }
+
+    /// Runs one chunk. The same chunk always gives the same result (but for the processor time).
+    ///
+    /// # Errors
+    /// [`EnumerateError::BadParameters`] unless `chunk.index < chunk.of`; [`EnumerateError::Stopped`] if the context says so.
+    pub fn run(&self, chunk: Chunk, wanted: Wanted<'_>, ctx: &Context<'_>) -> Result<ChunkResult, EnumerateError> {
+        if chunk.index >= chunk.of {
+            return Err(EnumerateError::BadParameters {
+                why: format!("chunk {} of {} asked for; chunks are numbered from 0", chunk.index, chunk.of),
+            });
+        }
+        let clock = CpuClock::start();
+        let before = match &self.nodes {
+            Nodes::Early(_) => None,
+            Nodes::Last(_, set) => Some(set),
+        };
+        let mut walk = Walk::new(&self.params, before, wanted);
+        if self.params.cubes == 1 {
+            // The cube has no parent: it belongs to the first chunk.
+            if chunk.index == 0 {
+                let cube = Complex::cube();
+                let labelling = canonical(&cube);
+                let (boundary, shape) = walk.counter.class(&cube, &labelling, labelling.code.hash128());
+                walk.found.look(&wanted, &mut walk.counter, &boundary, &shape, labelling.code);
+            }
+        } else {
+            for i in (chunk.index..self.n_nodes()).step_by(chunk.of) {
+                match &self.nodes {
+                    Nodes::Early(nodes) => walk.descend(&nodes[i].0, nodes[i].1, ctx)?,
+                    Nodes::Last(codes, _) => {
+                        if let Some(reason) = ctx.stop() {
+                            return Err(EnumerateError::Stopped { reason });
+                        }
+                        let parent = codes[i].decode()?;
+                        walk.count_children(&parent, canonical(&parent).automorphisms);
+                    }
+                }
+            }
+        }
+        Ok(ChunkResult { chunk, tally: walk.counter.finish(), found: walk.found, cpu_nanoseconds: clock.elapsed() })
+    }
+
+    /// Runs several chunks on threads. `done` is called for each as it is finished, one call at a time, in any order; its error
+    /// stops the run.
+    ///
+    /// # Errors
+    /// Those of [`run`](Self::run) and of `done`.
+    pub fn run_all(
+        &self,
+        chunks: &[Chunk],
+        threads: usize,
+        wanted: Wanted<'_>,
+        ctx: &Context<'_>,
+        done: &mut (dyn FnMut(ChunkResult) -> Result<(), EnumerateError> + Send),
+    ) -> Result<(), EnumerateError> {
+        let cursor = AtomicUsize::new(0);
+        let done = Mutex::new((done, 0u64));
+        crate::level::run_on(threads, &|| {
+            loop {
+                let at = cursor.fetch_add(1, Ordering::Relaxed);
+                let Some(&chunk) = chunks.get(at) else { return Ok(()) };
+                let result = self.run(chunk, wanted, ctx).and_then(|result| {
+                    let mut guard = done.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+                    guard.1 += 1;
+                    ctx.report("chunks", guard.1, Some(chunks.len() as u64), String::new);
+                    (guard.0)(result)
+                });
+                if result.is_err() {
+                    // The other threads end after the chunk they are in.
+                    cursor.store(chunks.len(), Ordering::Relaxed);
+                    return result;
+                }
+            }
+        })
+    }
+}
+
+/// Processor time of the current thread where the system tells it, else the time that passed.
+struct CpuClock {
+    start: Option<u64>,
+    wall: std::time::Instant,
+}
+
+impl CpuClock {
+    fn start() -> Self {
+        Self { start: thread_nanoseconds(), wall: std::time::Instant::now() }
+    }
+
+    fn elapsed(&self) -> u64 {
+        match (self.start, thread_nanoseconds()) {
+            (Some(start), Some(now)) => now - start,
+            _ => self.wall.elapsed().as_nanos() as u64,
+        }
+    }
+}
+
+/// Linux: the first number of the thread's `schedstat`.
+fn thread_nanoseconds() -> Option<u64> {
+    std::fs::read_to_string("/proc/thread-self/schedstat").ok()?.split(' ').next()?.parse().ok()
+}
