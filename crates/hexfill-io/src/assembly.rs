@@ -1,0 +1,221 @@
+//! [`Assembly`]: what the readers put points, faces and cells into.
+//!
+//! It keeps faces in order, sorts cells by kind, hands the arrays given "per cell of the file" to those cells they
+//! belong to, counts what is passed over, and turns an array of zeros back into "no tags".
+
+use crate::data::{MeshData, OtherFace};
+use std::collections::BTreeMap;
+
+/// Where a cell of the file went.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Slot {
+    Quad(u32),
+    OtherFace(u32),
+    Hex(u32),
+    /// Another kind of cell, whose tag is not kept.
+    Elsewhere,
+}
+
+/// An array read from a file, one value per point or cell.
+#[derive(Clone, Debug)]
+pub(crate) enum Values {
+    Whole(Vec<i64>),
+    Real(Vec<f64>),
+}
+
+impl Values {
+    pub(crate) fn len(&self) -> usize {
+        match self {
+            Self::Whole(v) => v.len(),
+            Self::Real(v) => v.len(),
+        }
+    }
+
+    /// The values as tags, if all of them are whole numbers.
+    fn as_tags(&self) -> Option<Vec<i64>> {
+        const EXACT: f64 = 9_007_199_254_740_992.0; // 2^53
+        match self {
+            Self::Whole(v) => Some(v.clone()),
+            Self::Real(v) => v.iter().map(|&x| (x.fract() == 0.0 && x.abs() <= EXACT).then_some(x as i64)).collect(),
+        }
+    }
+
+    fn real(&self, i: usize) -> f64 {
+        match self {
+            Self::Whole(v) => v[i] as f64,
+            Self::Real(v) => v[i],
+        }
+    }
+
+    fn to_reals(&self) -> Vec<f64> {
+        (0..self.len()).map(|i| self.real(i)).collect()
+    }
+}
+
+/// Names under which tags are stored as a data array, our own first; the earlier one wins.
+const TAG_NAMES: [&str; 9] =
+    ["tag", "tags", "gmsh:physical", "medit:ref", "CellEntityIds", "MaterialIds", "material", "label", "attribute"];
+
+fn tag_rank(name: &str) -> Option<usize> {
+    TAG_NAMES.iter().position(|n| n.eq_ignore_ascii_case(name))
+}
+
+/// A mesh under construction.
+#[derive(Default)]
+pub(crate) struct Assembly {
+    pub(crate) mesh: MeshData,
+    pub(crate) point_tags: Vec<i64>,
+    quad_tags: Vec<i64>,
+    hex_tags: Vec<i64>,
+    /// The tags of points (cells) have come from a data array of this rank.
+    point_rank: Option<usize>,
+    cell_rank: Option<usize>,
+    ignored: BTreeMap<String, u64>,
+    lost_tags: u64,
+}
+
+impl Assembly {
+    /// Number of points so far.
+    pub(crate) fn point_count(&self) -> usize {
+        self.mesh.points.len()
+    }
+
+    /// Adds a face with three sides or more.
+    pub(crate) fn face(&mut self, vertices: &[u32], tag: i64) -> Slot {
+        if let Ok(quad) = <[u32; 4]>::try_from(vertices) {
+            return self.quad(quad, tag);
+        }
+        let position = self.mesh.face_count();
+        self.mesh.other_faces.push(OtherFace { position, vertices: vertices.to_vec(), tag });
+        Slot::OtherFace(self.mesh.other_faces.len() as u32 - 1)
+    }
+
+    pub(crate) fn quad(&mut self, quad: [u32; 4], tag: i64) -> Slot {
+        self.mesh.quads.push(quad);
+        self.quad_tags.push(tag);
+        Slot::Quad(self.mesh.quads.len() as u32 - 1)
+    }
+
+    pub(crate) fn hex(&mut self, hex: [u32; 8], tag: i64) -> Slot {
+        self.mesh.hexes.push(hex);
+        self.hex_tags.push(tag);
+        Slot::Hex(self.mesh.hexes.len() as u32 - 1)
+    }
+
+    /// Adds a tetrahedron, pyramid or wedge, told by its number of nodes; false for any other number.
+    pub(crate) fn small_cell(&mut self, nodes: &[u32], tag: i64) -> bool {
+        if let Ok(tet) = <[u32; 4]>::try_from(nodes) {
+            self.mesh.tets.push(tet);
+        } else if let Ok(pyramid) = <[u32; 5]>::try_from(nodes) {
+            self.mesh.pyramids.push(pyramid);
+        } else if let Ok(wedge) = <[u32; 6]>::try_from(nodes) {
+            self.mesh.wedges.push(wedge);
+        } else {
+            return false;
+        }
+        self.lost_tags += u64::from(tag != 0);
+        true
+    }
+
+    /// Counts something that is passed over.
+    pub(crate) fn ignore(&mut self, what: &str) {
+        self.ignore_many(what, 1);
+    }
+
+    pub(crate) fn ignore_many(&mut self, what: &str, count: u64) {
+        if count == 0 {
+            return;
+        }
+        if let Some(n) = self.ignored.get_mut(what) {
+            *n += count;
+        } else {
+            self.ignored.insert(what.to_owned(), count);
+        }
+    }
+
+    pub(crate) fn note(&mut self, note: impl Into<String>) {
+        self.mesh.notes.push(note.into());
+    }
+
+    /// The tag of a cell already added.
+    pub(crate) fn tag(&self, slot: Slot) -> i64 {
+        match slot {
+            Slot::Quad(i) => self.quad_tags[i as usize],
+            Slot::OtherFace(i) => self.mesh.other_faces[i as usize].tag,
+            Slot::Hex(i) => self.hex_tags[i as usize],
+            Slot::Elsewhere => 0,
+        }
+    }
+
+    pub(crate) fn set_tag(&mut self, slot: Slot, tag: i64) {
+        match slot {
+            Slot::Quad(i) => self.quad_tags[i as usize] = tag,
+            Slot::OtherFace(i) => self.mesh.other_faces[i as usize].tag = tag,
+            Slot::Hex(i) => self.hex_tags[i as usize] = tag,
+            Slot::Elsewhere => self.lost_tags += u64::from(tag != 0),
+        }
+    }
+
+    /// Takes an array with one value per point: tags if its name says so, data otherwise.
+    pub(crate) fn point_array(&mut self, name: &str, values: &Values) {
+        let n = self.point_count();
+        if values.len() != n {
+            self.note(format!("point array `{name}` has {} values for {n} points: not kept", values.len()));
+            return;
+        }
+        if let (Some(rank), Some(tags)) = (tag_rank(name), values.as_tags())
+            && self.point_rank.is_none_or(|r| rank < r)
+        {
+            self.point_rank = Some(rank);
+            self.point_tags = tags;
+            return;
+        }
+        self.mesh.point_data.push((name.to_owned(), values.to_reals()));
+    }
+
+    /// Takes an array with one value per cell of the file, whose places are `slots`.
+    pub(crate) fn cell_array(&mut self, name: &str, values: &Values, slots: &[Slot]) {
+        if values.len() != slots.len() {
+            self.note(format!("cell array `{name}` has {} values for {} cells: not kept", values.len(), slots.len()));
+            return;
+        }
+        if let (Some(rank), Some(tags)) = (tag_rank(name), values.as_tags())
+            && self.cell_rank.is_none_or(|r| rank < r)
+        {
+            self.cell_rank = Some(rank);
+            for (&slot, &tag) in slots.iter().zip(&tags) {
+                self.set_tag(slot, tag);
+            }
+            if rank > 0 {
+                self.note(format!("cell array `{name}` is read as tags"));
+            }
+            return;
+        }
+        if self.mesh.hexes.is_empty() {
+            self.note(format!("cell array `{name}` is not kept: there are no hexes"));
+            return;
+        }
+        let mut data = vec![f64::NAN; self.mesh.hexes.len()];
+        for (i, &slot) in slots.iter().enumerate() {
+            if let Slot::Hex(h) = slot {
+                data[h as usize] = values.real(i);
+            }
+        }
+        self.mesh.hex_data.push((name.to_owned(), data));
+    }
+
+    /// The finished mesh.
+    pub(crate) fn finish(mut self) -> MeshData {
+        let some = |tags: Vec<i64>, n: usize| (tags.len() == n && tags.iter().any(|&t| t != 0)).then_some(tags);
+        self.mesh.point_tags = some(self.point_tags, self.mesh.points.len());
+        self.mesh.quad_tags = some(self.quad_tags, self.mesh.quads.len());
+        self.mesh.hex_tags = some(self.hex_tags, self.mesh.hexes.len());
+        for (what, count) in &self.ignored {
+            self.mesh.notes.push(format!("{count} {what} ignored"));
+        }
+        if self.lost_tags > 0 {
+            self.mesh.notes.push(format!("tags of {} tetrahedra, wedges or pyramids are not kept", self.lost_tags));
+        }
+        self.mesh
+    }
+}

@@ -1,0 +1,244 @@
+//! [`MeshData`]: what a file holds, as plain arrays in the order of the file. No topology is checked here;
+//! `QuadSurface` and `HexMesh` do that.
+//!
+//! Invariants after reading: every index names a point (where there are coordinates), coordinates are finite,
+//! `other_faces` is sorted by position, and tag and data arrays are as long as what they describe.
+
+use crate::error::WriteError;
+use crate::format::Format;
+
+/// A face that is no quad.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct OtherFace {
+    /// Index among *all* faces of the file (quads included), from 0.
+    pub position: usize,
+    /// Its vertices in cyclic order: three, five or more.
+    pub vertices: Vec<u32>,
+    /// Its tag, 0 if it has none.
+    pub tag: i64,
+}
+
+/// A surface, a mesh, or both, as a file holds it. All indices are 0-based.
+///
+/// A tag is a number a user gave to a point, face or cell (boundary condition, material; the "reference" of MEDIT, the
+/// "physical group" of Gmsh). 0 means "none": an array of tags that are all 0 is read as `None`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeshData {
+    /// Coordinates, bit for bit as in the file. Empty if `has_coordinates` is false.
+    pub points: Vec<[f64; 3]>,
+    /// The faces with four sides, in cyclic order.
+    pub quads: Vec<[u32; 4]>,
+    /// All other faces; their `position` says where they stand among the quads.
+    pub other_faces: Vec<OtherFace>,
+    /// Hexahedra in VTK_HEXAHEDRON order.
+    pub hexes: Vec<[u32; 8]>,
+    /// Tetrahedra.
+    pub tets: Vec<[u32; 4]>,
+    /// Wedges (prisms), in the order of the file.
+    pub wedges: Vec<[u32; 6]>,
+    /// Pyramids: base quad, then apex.
+    pub pyramids: Vec<[u32; 5]>,
+    /// One tag per point.
+    pub point_tags: Option<Vec<i64>>,
+    /// One tag per quad.
+    pub quad_tags: Option<Vec<i64>>,
+    /// One tag per hex.
+    pub hex_tags: Option<Vec<i64>>,
+    /// Named numbers, one per point. NaN means "no value".
+    pub point_data: Vec<(String, Vec<f64>)>,
+    /// Named numbers, one per hex (qualities). NaN means "no value".
+    pub hex_data: Vec<(String, Vec<f64>)>,
+    /// False if the file has connectivity only.
+    pub has_coordinates: bool,
+    /// What was recognised and what was passed over, for the user.
+    pub notes: Vec<String>,
+}
+
+impl Default for MeshData {
+    fn default() -> Self {
+        Self {
+            points: Vec::new(),
+            quads: Vec::new(),
+            other_faces: Vec::new(),
+            hexes: Vec::new(),
+            tets: Vec::new(),
+            wedges: Vec::new(),
+            pyramids: Vec::new(),
+            point_tags: None,
+            quad_tags: None,
+            hex_tags: None,
+            point_data: Vec::new(),
+            hex_data: Vec::new(),
+            has_coordinates: true,
+            notes: Vec::new(),
+        }
+    }
+}
+
+impl MeshData {
+    /// A surface of quads.
+    pub fn from_quads(points: Vec<[f64; 3]>, quads: Vec<[u32; 4]>) -> Self {
+        Self { points, quads, ..Self::default() }
+    }
+
+    /// Number of vertices: of points, or without coordinates one more than the largest index.
+    pub fn vertex_count(&self) -> usize {
+        if self.has_coordinates { self.points.len() } else { self.largest_index().map_or(0, |i| i as usize + 1) }
+    }
+
+    /// Number of faces of any number of sides.
+    pub fn face_count(&self) -> usize {
+        self.quads.len() + self.other_faces.len()
+    }
+
+    /// Number of cells of any kind.
+    pub fn cell_count(&self) -> usize {
+        self.hexes.len() + self.tets.len() + self.wedges.len() + self.pyramids.len()
+    }
+
+    /// All faces in the order of the file, each as the cycle of its vertices.
+    pub fn faces(&self) -> impl Iterator<Item = &[u32]> {
+        self.tagged_faces().map(|(face, _)| face)
+    }
+
+    /// All faces with their tags (0 for none), in the order of the file.
+    pub(crate) fn tagged_faces(&self) -> impl Iterator<Item = (&[u32], i64)> {
+        let (mut position, mut quad, mut other) = (0, 0, 0);
+        std::iter::from_fn(move || {
+            // Positions that leave gaps (a hand-made MeshData) do no harm: the other faces then come last.
+            let next = self.other_faces.get(other);
+            let item = match next {
+                Some(face) if face.position <= position || quad >= self.quads.len() => {
+                    other += 1;
+                    Some((face.vertices.as_slice(), face.tag))
+                }
+                _ => {
+                    let item = self.quads.get(quad).map(|q| (q.as_slice(), self.quad_tag(quad)));
+                    quad += 1;
+                    item
+                }
+            };
+            position += 1;
+            item
+        })
+    }
+
+    pub(crate) fn quad_tag(&self, quad: usize) -> i64 {
+        self.quad_tags.as_ref().and_then(|tags| tags.get(quad)).copied().unwrap_or(0)
+    }
+
+    pub(crate) fn hex_tag(&self, hex: usize) -> i64 {
+        self.hex_tags.as_ref().and_then(|tags| tags.get(hex)).copied().unwrap_or(0)
+    }
+
+    /// The same without cells: what a surface format can hold.
+    pub fn surface_only(&self) -> Self {
+        Self {
+            hexes: Vec::new(),
+            tets: Vec::new(),
+            wedges: Vec::new(),
+            pyramids: Vec::new(),
+            hex_tags: None,
+            hex_data: Vec::new(),
+            ..self.clone()
+        }
+    }
+
+    /// What `format` would drop without refusing: tags and data it has no place for, one sentence each.
+    pub fn losses(&self, format: Format) -> Vec<String> {
+        let mut losses = Vec::new();
+        let mut lost = |is_lost: bool, what: &str| {
+            if is_lost {
+                losses.push(format!("{} does not carry {what}", format.title()));
+            }
+        };
+        lost(self.point_tags.is_some() && !format.holds_point_tags(), "tags of points");
+        lost(self.quad_tags.is_some() && !format.holds_cell_tags(), "tags of quads");
+        lost(!self.point_data.is_empty() && !format.holds_data(), "data on points");
+        lost(!self.hex_data.is_empty() && !format.holds_data(), "data on hexes");
+        losses
+    }
+
+    fn largest_index(&self) -> Option<u32> {
+        let faces = self.quads.iter().flatten().chain(self.other_faces.iter().flat_map(|f| &f.vertices));
+        let cells = self.hexes.iter().flatten().chain(self.tets.iter().flatten());
+        let rest = self.wedges.iter().flatten().chain(self.pyramids.iter().flatten());
+        faces.chain(cells).chain(rest).max().copied()
+    }
+
+    /// Checks that the arrays fit together, that coordinates are finite and that `format` has a place for everything
+    /// that must not be lost (points, faces, cells).
+    ///
+    /// # Errors
+    /// The first [`WriteError`] that writing would meet.
+    pub fn check_for(&self, format: Format) -> Result<(), WriteError> {
+        if !self.has_coordinates && format != Format::Json {
+            return Err(WriteError::NoCoordinates { format });
+        }
+        if !self.has_coordinates && !self.points.is_empty() {
+            let what = format!("{} points although `has_coordinates` is false", self.points.len());
+            return Err(WriteError::Inconsistent { what });
+        }
+        self.check_lengths()?;
+        for (point, coordinates) in self.points.iter().enumerate() {
+            for (&given, axis) in coordinates.iter().zip(['x', 'y', 'z']) {
+                if !given.is_finite() {
+                    return Err(WriteError::NotFinite { point, axis, given });
+                }
+            }
+        }
+        if self.has_coordinates
+            && let Some(index) = self.largest_index().filter(|&i| i as usize >= self.points.len())
+        {
+            let what = format!("index {index} is used, but there are only {} points", self.points.len());
+            return Err(WriteError::Inconsistent { what });
+        }
+        if !format.holds_cells() && self.cell_count() > 0 {
+            return Err(WriteError::CannotHold {
+                format,
+                what: format!("{} cells ({} hexes)", self.cell_count(), self.hexes.len()),
+                remedy: "write the surface alone, or use a mesh format such as .vtk, .vtu, .mesh or .msh".to_owned(),
+            });
+        }
+        if !format.holds_polygons()
+            && let Some(face) = self.other_faces.iter().find(|f| f.vertices.len() != 3)
+        {
+            return Err(WriteError::CannotHold {
+                format,
+                what: format!("a face with {} sides (face {}, 0-based)", face.vertices.len(), face.position),
+                remedy: "use .vtk, .vtu, .obj, .off or .ply".to_owned(),
+            });
+        }
+        let mixed = self.tets.len() + self.wedges.len() + self.pyramids.len();
+        if format == Format::Json && mixed > 0 {
+            return Err(WriteError::CannotHold {
+                format,
+                what: format!("{mixed} cells that are not hexes"),
+                remedy: "use .vtk, .vtu, .mesh or .msh".to_owned(),
+            });
+        }
+        Ok(())
+    }
+
+    fn check_lengths(&self) -> Result<(), WriteError> {
+        let n = self.vertex_count();
+        let arrays = [
+            ("point_tags", self.point_tags.as_ref().map(Vec::len), n),
+            ("quad_tags", self.quad_tags.as_ref().map(Vec::len), self.quads.len()),
+            ("hex_tags", self.hex_tags.as_ref().map(Vec::len), self.hexes.len()),
+        ];
+        let tags = arrays.into_iter().filter_map(|(name, given, due)| given.map(|g| (name.to_owned(), g, due)));
+        let point_data = self.point_data.iter().map(|(name, v)| (format!("point data `{name}`"), v.len(), n));
+        let hex_data = self.hex_data.iter().map(|(name, v)| (format!("hex data `{name}`"), v.len(), self.hexes.len()));
+        for (name, given, due) in tags.chain(point_data).chain(hex_data) {
+            if given != due {
+                return Err(WriteError::Inconsistent { what: format!("{name} has {given} values instead of {due}") });
+            }
+        }
+        if let Some(face) = self.other_faces.iter().find(|f| f.vertices.len() < 3 || f.vertices.len() == 4) {
+            let what = format!("an entry of `other_faces` has {} vertices", face.vertices.len());
+            return Err(WriteError::Inconsistent { what });
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,156 @@
+//! JSON as used for hex templates: `{"hexes": [[8 indices], ...], "boundary_quads": [[4 indices], ...]}`, optionally with
+//! `points`, `point_tags`, `quad_tags` and `hex_tags`. Without `points` a file holds connectivity alone.
+
+use crate::assembly::Assembly;
+use crate::data::MeshData;
+use crate::error::{Place, Position, ReadError};
+use crate::source::Source;
+use crate::write::Real;
+use serde::Deserialize;
+use std::io::{self, Write};
+
+#[derive(Deserialize)]
+struct File {
+    #[serde(default)]
+    hexes: Vec<[u32; 8]>,
+    /// Faces of any number of sides, although the name says quads.
+    #[serde(default, alias = "quads")]
+    boundary_quads: Vec<Vec<u32>>,
+    points: Option<Vec<[f64; 3]>>,
+    point_tags: Option<Vec<i64>>,
+    quad_tags: Option<Vec<i64>>,
+    hex_tags: Option<Vec<i64>>,
+    /// The largest index of all, to be refused when the file has no points but indices with gaps.
+    #[serde(flatten)]
+    rest: std::collections::BTreeMap<String, serde::de::IgnoredAny>,
+}
+
+pub(crate) fn read(mut source: Source<'_>) -> Result<MeshData, ReadError> {
+    let place = |source: &Source<'_>, line: usize| {
+        let position = if line == 0 { Position::Whole } else { Position::Line(line as u64) };
+        Box::new(Place { file: source.file().to_owned(), format: source.format(), position })
+    };
+    let parsed: Result<File, _> = serde_json::from_reader(source.reader());
+    let file = match parsed {
+        Ok(file) => file,
+        Err(e) if e.is_io() => return Err(source.io_error(e.into())),
+        Err(e) if e.is_eof() && e.line() <= 1 && e.column() == 0 => return Err(source.empty()),
+        Err(e) if e.is_eof() => {
+            return Err(ReadError::Truncated {
+                at: place(&source, e.line()),
+                expected: "the end of the object".to_owned(),
+            });
+        }
+        Err(e) => {
+            let mut given = e.to_string();
+            if let Some(cut) = given.rfind(" at line ") {
+                given.truncate(cut);
+            }
+            return Err(ReadError::Malformed {
+                at: place(&source, e.line()),
+                expected: "an object with `hexes`, `boundary_quads` and perhaps `points`".to_owned(),
+                given,
+                remedy: "correct this place".to_owned(),
+            });
+        }
+    };
+    let malformed = |expected: String, given: String, remedy: &str| {
+        Err(ReadError::Malformed { at: place(&source, 0), expected, given, remedy: remedy.to_owned() })
+    };
+    if file.hexes.is_empty() && file.boundary_quads.is_empty() {
+        return malformed("`hexes` or `boundary_quads`".to_owned(), "neither".to_owned(), "is this a mesh?");
+    }
+    let n_indices = 8 * file.hexes.len() + file.boundary_quads.iter().map(Vec::len).sum::<usize>();
+    let indices = || file.hexes.iter().flatten().chain(file.boundary_quads.iter().flatten()).copied();
+    let largest = indices().max().unwrap_or(0);
+    let n_points = file.points.as_ref().map_or_else(|| largest as usize + 1, Vec::len);
+    if largest as usize >= n_points {
+        let (at, what) = (place(&source, 0), "point".to_owned());
+        let highest = n_points as i64 - 1;
+        return Err(ReadError::IndexOutOfRange { at, what, given: i64::from(largest), lowest: 0, highest });
+    }
+    if file.points.is_none() && largest as usize >= n_indices {
+        // Every vertex that exists is used somewhere; this also keeps a small file from claiming a huge mesh.
+        let expected = format!("indices without large gaps (the file lists {n_indices})");
+        return malformed(expected, format!("index {largest}"), "renumber the vertices from 0, or give `points`");
+    }
+    if let Some(i) = file.boundary_quads.iter().position(|q| q.len() < 3) {
+        return malformed("faces with three or more vertices".to_owned(), format!("face {i}"), "complete the face");
+    }
+    let n_quads = file.boundary_quads.len();
+    for (name, tags, due) in [
+        ("point_tags", &file.point_tags, n_points),
+        ("quad_tags", &file.quad_tags, n_quads),
+        ("hex_tags", &file.hex_tags, file.hexes.len()),
+    ] {
+        if let Some(tags) = tags.as_ref().filter(|t| t.len() != due) {
+            return malformed(format!("{due} `{name}`"), format!("{}", tags.len()), "give one each");
+        }
+    }
+    let mut out = Assembly::default();
+    for key in file.rest.keys() {
+        out.ignore(&format!("`{key}` entries"));
+    }
+    for (i, face) in file.boundary_quads.iter().enumerate() {
+        out.face(face, file.quad_tags.as_ref().map_or(0, |t| t[i]));
+    }
+    for (i, &hex) in file.hexes.iter().enumerate() {
+        out.hex(hex, file.hex_tags.as_ref().map_or(0, |t| t[i]));
+    }
+    let point_tags = file.point_tags;
+    let has_coordinates = file.points.is_some();
+    out.mesh.points = file.points.unwrap_or_default();
+    let mut mesh = out.finish();
+    mesh.has_coordinates = has_coordinates;
+    mesh.point_tags = point_tags.filter(|tags| tags.iter().any(|&t| t != 0));
+    Ok(mesh)
+}
+
+pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
+    out.write_all(b"{")?;
+    let mut separator = "\n";
+    if data.has_coordinates {
+        write!(out, "{separator}\"points\": ")?;
+        rows(out, data.points.iter().map(|p| p.iter().map(|&x| Real(x))))?;
+        separator = ",\n";
+    }
+    write!(out, "{separator}\"hexes\": ")?;
+    rows(out, data.hexes.iter().map(|h| h.iter()))?;
+    out.write_all(b",\n\"boundary_quads\": ")?;
+    rows(out, data.faces().map(|f| f.iter()))?;
+    let face_tags: Vec<i64> = data.tagged_faces().map(|(_, tag)| tag).collect();
+    let quad_tags = face_tags.iter().any(|&t| t != 0).then_some(&face_tags);
+    for (name, tags) in
+        [("point_tags", data.point_tags.as_ref()), ("quad_tags", quad_tags), ("hex_tags", data.hex_tags.as_ref())]
+    {
+        if let Some(tags) = tags {
+            write!(out, ",\n\"{name}\": ")?;
+            row(out, tags.iter())?;
+        }
+    }
+    out.write_all(b"\n}\n")
+}
+
+fn rows<T: std::fmt::Display>(
+    out: &mut dyn Write,
+    rows: impl Iterator<Item = impl Iterator<Item = T>>,
+) -> io::Result<()> {
+    let mut separator = "[\n";
+    for items in rows {
+        out.write_all(separator.as_bytes())?;
+        row(out, items)?;
+        separator = ",\n";
+    }
+    out.write_all(if separator == "[\n" { b"[]" } else { b"\n]" })
+}
+
+fn row<T: std::fmt::Display>(out: &mut dyn Write, items: impl Iterator<Item = T>) -> io::Result<()> {
+    out.write_all(b"[")?;
+    for (i, item) in items.enumerate() {
+        if i > 0 {
+            out.write_all(b", ")?;
+        }
+        write!(out, "{item}")?;
+    }
+    out.write_all(b"]")
+}

@@ -1,0 +1,441 @@
+//! What versions 2.2 and 4.1 share: header, element types, node numbers, data sections.
+
+use super::{v2, v4};
+use crate::assembly::{Assembly, Slot, Values};
+use crate::data::MeshData;
+use crate::error::{ReadError, snippet};
+use crate::format::Format;
+use crate::source::{Source, Span, reserve};
+use crate::write::{Real, unquoted};
+use rustc_hash::FxHashMap;
+use std::io::{self, Write};
+
+/// Numbers of nodes of Gmsh's element types 1 to 31 (0: no such type here).
+const NODES: [usize; 32] =
+    [0, 2, 3, 4, 4, 8, 6, 5, 3, 6, 9, 10, 27, 18, 14, 1, 8, 20, 15, 13, 9, 10, 12, 15, 15, 21, 4, 5, 6, 20, 35, 56];
+
+pub(crate) const TRIANGLE: i64 = 2;
+pub(crate) const QUAD: i64 = 3;
+pub(crate) const TET: i64 = 4;
+pub(crate) const HEX: i64 = 5;
+pub(crate) const WEDGE: i64 = 6;
+pub(crate) const PYRAMID: i64 = 7;
+
+/// Number of nodes of an element type, if it is known.
+pub(crate) fn nodes_of(element_type: i64) -> Option<usize> {
+    usize::try_from(element_type).ok().and_then(|t| NODES.get(t)).copied().filter(|&n| n > 0)
+}
+
+/// From the numbers of a file to positions in it. Numbers that simply count up cost nothing.
+#[derive(Default)]
+pub(crate) struct Numbers {
+    first: i64,
+    count: u32,
+    map: Option<FxHashMap<i64, u32>>,
+}
+
+impl Numbers {
+    /// Adds the next number; false if it is there already (it then means the last one).
+    pub(crate) fn push(&mut self, number: i64) -> bool {
+        if self.count == 0 {
+            self.first = number;
+        }
+        if self.map.is_none() && number != self.first.wrapping_add(i64::from(self.count)) {
+            let first = self.first;
+            self.map = Some((0..self.count).map(|i| (first.wrapping_add(i64::from(i)), i)).collect());
+        }
+        let known = self.map.as_mut().is_some_and(|map| map.insert(number, self.count).is_some());
+        self.count += 1;
+        !known
+    }
+
+    pub(crate) fn get(&self, number: i64) -> Option<u32> {
+        match &self.map {
+            Some(map) => map.get(&number).copied(),
+            None => u32::try_from(number.checked_sub(self.first)?).ok().filter(|&i| i < self.count),
+        }
+    }
+}
+
+/// A file being read.
+pub(crate) struct Reader<'r> {
+    pub(crate) s: Source<'r>,
+    pub(crate) out: Assembly,
+    pub(crate) nodes: Numbers,
+    pub(crate) elements: Numbers,
+    /// Per element, in order of the file: where it went.
+    pub(crate) slots: Vec<Slot>,
+    /// Per element: elementary entity.
+    pub(crate) entities: Vec<i64>,
+    /// Binary file, and whether its bytes must be reversed.
+    pub(crate) binary: Option<bool>,
+    pub(crate) has_nodes: bool,
+    pub(crate) has_elements: bool,
+}
+
+pub(crate) fn read(mut s: Source<'_>) -> Result<MeshData, ReadError> {
+    let asked = s.format();
+    // Comments may come before the header.
+    loop {
+        if !s.next_full_line()? {
+            return Err(s.empty());
+        }
+        let line = s.line().trim_ascii();
+        if line == b"$MeshFormat" {
+            break;
+        }
+        if line == b"$Comments" {
+            skip(&mut s, "Comments")?;
+            continue;
+        }
+        if line == b"$NOD" {
+            return Err(s.unsupported("Gmsh MSH 1", "save it as version 2.2 or 4.1 (gmsh -save -format msh22)"));
+        }
+        if line.starts_with(b"(") {
+            let remedy = "save it as Gmsh 2.2 or 4.1 (`gmsh:` formats), VTK or MEDIT";
+            return Err(s.unsupported("an ANSYS/Fluent .msh (this is not a Gmsh file)", remedy));
+        }
+        let given = snippet(line);
+        return Err(s.malformed_text(
+            "`$MeshFormat`",
+            given,
+            "is this a Gmsh file? name the format if the extension is wrong",
+        ));
+    }
+    if !s.next_full_line()? {
+        return Err(s.truncated("the version"));
+    }
+    let span = s.need_word("the version")?;
+    let version = s.string(span);
+    let span = s.need_word("0 (ASCII) or 1 (binary)")?;
+    let is_binary = s.integer(span, "the file type")? != 0;
+    let v4 = match version.as_str() {
+        "2" | "2.0" | "2.1" | "2.2" => false,
+        "4.1" => true,
+        _ => {
+            let remedy = "save it as version 2.2 or 4.1 (gmsh -save -format msh41)";
+            return Err(s.unsupported(format!("Gmsh MSH {}", snippet(version.as_bytes())), remedy));
+        }
+    };
+    let format = if v4 { Format::Msh41 } else { Format::Msh22 };
+    s.set_format(format);
+    let mut binary = None;
+    if is_binary {
+        let mut one = [0; 4];
+        s.exact(&mut one, "the number 1 that shows the byte order")?;
+        binary = Some(match (u32::from_le_bytes(one), u32::from_be_bytes(one)) {
+            (1, _) => false,
+            (_, 1) => true,
+            _ => return Err(s.malformed_text("the number 1 in binary", "another".to_owned(), "the file is damaged")),
+        });
+    }
+    let mut reader = Reader {
+        s,
+        out: Assembly::default(),
+        nodes: Numbers::default(),
+        elements: Numbers::default(),
+        slots: Vec::new(),
+        entities: Vec::new(),
+        binary,
+        has_nodes: false,
+        has_elements: false,
+    };
+    let flavour = if is_binary { "binary" } else { "ASCII" };
+    reader.out.note(format!("read as {} ({flavour}), not ANSYS/Fluent", format.title()));
+    if asked != format && asked != Format::Msh22 {
+        reader.out.note(format!("{} was asked for, but the file says version {version}", asked.title()));
+    }
+    reader.close("MeshFormat")?;
+    if v4 {
+        v4::sections(&mut reader)?
+    } else {
+        v2::sections(&mut reader)?
+    }
+    if !reader.has_nodes {
+        return Err(reader.s.truncated("a section $Nodes"));
+    }
+    if !reader.has_elements {
+        reader.out.note("the file has no section $Elements");
+    }
+    reader.entities_as_tags();
+    Ok(reader.out.finish())
+}
+
+/// Skips to the end of a section.
+pub(crate) fn skip(s: &mut Source<'_>, name: &str) -> Result<(), ReadError> {
+    let end = format!("$End{name}");
+    while s.next_line()? {
+        if s.line().trim_ascii() == end.as_bytes() {
+            return Ok(());
+        }
+    }
+    Err(s.truncated(format!("`{end}`")))
+}
+
+impl Reader<'_> {
+    /// The name of the next section, without its `$`; `None` at the end of the file.
+    pub(crate) fn next_section(&mut self) -> Result<Option<String>, ReadError> {
+        if !self.s.next_full_line()? {
+            return Ok(None);
+        }
+        let span = self.s.need_word("a section")?;
+        let name = self.s.string(span);
+        match name.strip_prefix('$') {
+            Some(name) if !name.starts_with("End") => Ok(Some(name.to_owned())),
+            _ => Err(self.s.malformed(
+                "the beginning of a section, `$...`",
+                span,
+                "correct the counts of the section before",
+            )),
+        }
+    }
+
+    /// Expects the end of a section.
+    pub(crate) fn close(&mut self, name: &str) -> Result<(), ReadError> {
+        if self.binary.is_some() {
+            self.s.skip_line_end()?;
+        }
+        let end = format!("$End{name}");
+        if !self.s.next_full_line()? {
+            return Err(self.s.truncated(format!("`{end}`")));
+        }
+        let span = self.s.need_word(&end)?;
+        if self.s.text(span) != end.as_bytes() {
+            return Err(self.s.malformed(format!("`{end}`"), span, "correct the count of the section"));
+        }
+        Ok(())
+    }
+
+    pub(crate) fn refuse_repetition(&mut self, name: &str) -> Result<(), ReadError> {
+        let seen = if name == "Nodes" { &mut self.has_nodes } else { &mut self.has_elements };
+        if std::mem::replace(seen, true) {
+            let given = format!("${name} again");
+            return Err(self.s.malformed_text("each section once", given, "remove the repeated section"));
+        }
+        if name == "Elements" && !self.has_nodes {
+            return Err(self.s.unsupported("$Elements before $Nodes", "put the nodes first"));
+        }
+        Ok(())
+    }
+
+    /// A line of the section, or an error that says how much of it there was.
+    pub(crate) fn need_line(&mut self, n: u64, what: &str, i: u64) -> Result<(), ReadError> {
+        if self.s.next_full_line()? {
+            return Ok(());
+        }
+        Err(self.s.truncated(format!("{n} {what}, found {i}")))
+    }
+
+    /// The next whole number of the line.
+    pub(crate) fn integer(&mut self, what: &str) -> Result<i64, ReadError> {
+        let span = self.s.need_word(what)?;
+        self.s.integer(span, what)
+    }
+
+    /// The next count of the line.
+    pub(crate) fn count(&mut self, what: &str) -> Result<u64, ReadError> {
+        let span = self.s.need_word(&format!("the number of {what}"))?;
+        self.s.count(span, what)
+    }
+
+    pub(crate) fn add_node(&mut self, number: i64, point: [f64; 3]) -> Result<(), ReadError> {
+        if !self.nodes.push(number) {
+            let given = format!("{number} twice");
+            return Err(self.s.malformed_text("node numbers that differ", given, "renumber the nodes"));
+        }
+        self.out.mesh.points.push(point);
+        Ok(())
+    }
+
+    /// The position of a node number.
+    pub(crate) fn node(&self, number: i64) -> Result<u32, ReadError> {
+        self.nodes.get(number).ok_or_else(|| {
+            let count = self.nodes.count as usize;
+            // The message counts the numbers of the file where they are simple.
+            match self.s.checked_index(number, self.nodes.first, count, "node") {
+                Err(e) if self.nodes.map.is_none() => e,
+                _ => {
+                    self.s.malformed_text("the number of a node", format!("{number}, which no node has"), "correct it")
+                }
+            }
+        })
+    }
+
+    pub(crate) fn node_word(&mut self) -> Result<u32, ReadError> {
+        let span: Span = self.s.need_word("a node")?;
+        let number = self.s.integer(span, "a node number")?;
+        self.node(number)
+    }
+
+    /// Adds an element by its type.
+    pub(crate) fn add_element(&mut self, number: i64, element_type: i64, nodes: &[u32], tag: i64, entity: i64) {
+        let slot = match (element_type, <[u32; 8]>::try_from(nodes)) {
+            (HEX, Ok(hex)) => self.out.hex(hex, tag),
+            (TRIANGLE | QUAD, _) => self.out.face(nodes, tag),
+            (TET | WEDGE | PYRAMID, _) => {
+                self.out.small_cell(nodes, tag);
+                Slot::Elsewhere
+            }
+            _ => {
+                self.out.ignore(match element_type {
+                    1 => "line elements",
+                    15 => "point elements",
+                    _ => "elements of higher order",
+                });
+                Slot::Elsewhere
+            }
+        };
+        self.elements.push(number);
+        self.slots.push(slot);
+        self.entities.push(entity);
+    }
+
+    /// Where no element has a physical group, entities are the tags, if faces or hexes have several.
+    fn entities_as_tags(&mut self) {
+        if self.slots.iter().any(|&slot| self.out.tag(slot) != 0) {
+            return;
+        }
+        let kind = |slot: Slot| match slot {
+            Slot::Quad(_) | Slot::OtherFace(_) => 0,
+            Slot::Hex(_) => 1,
+            Slot::Elsewhere => 2,
+        };
+        let mut first = [None; 3];
+        let mut several = [false; 3];
+        for (&slot, &entity) in self.slots.iter().zip(&self.entities) {
+            let k = kind(slot);
+            several[k] |= first[k].replace(entity).is_some_and(|e| e != entity);
+        }
+        if several[0] || several[1] {
+            for (&slot, &entity) in self.slots.iter().zip(&self.entities) {
+                if several[kind(slot)] && slot != Slot::Elsewhere {
+                    self.out.set_tag(slot, entity);
+                }
+            }
+            self.out.note("there are no physical groups: the elementary entities are read as tags");
+        }
+    }
+
+    /// `$NodeData` or `$ElementData` (the same in both versions).
+    pub(crate) fn read_data(&mut self, section: &str) -> Result<(), ReadError> {
+        let mut name = String::new();
+        let missing = "the tags of the data";
+        let mut header = [0i64; 3];
+        for part in 0..3 {
+            self.need_line(1, missing, 0)?;
+            let n = self.count("tags")?;
+            for i in 0..n {
+                self.need_line(n, "tags", i)?;
+                if part == 0 && i == 0 {
+                    name = String::from_utf8_lossy(self.s.line().trim_ascii()).trim_matches('"').to_owned();
+                } else if part == 2 && i < 3 {
+                    header[i as usize] = self.integer("a whole number")?;
+                }
+            }
+        }
+        let [_, components, count] = header;
+        let limit = 1 << 20;
+        let (Ok(components), Ok(count)) = (u64::try_from(components), u64::try_from(count)) else {
+            return Err(self.s.malformed_text("counts in the data", "negative ones".to_owned(), "correct them"));
+        };
+        if components > limit || count > u64::from(u32::MAX) {
+            return Err(self.s.malformed_text("counts in the data", "enormous ones".to_owned(), "correct them"));
+        }
+        let on_nodes = section == "NodeData";
+        let n = if on_nodes { self.out.point_count() } else { self.slots.len() };
+        let mut values: Vec<f64> = Vec::with_capacity(reserve(n as u64));
+        let mut filled = 0usize;
+        for i in 0..count {
+            let number;
+            let mut value = 0.0;
+            if let Some(reversed) = self.binary {
+                let mut four = [0; 4];
+                self.s.exact(&mut four, "more data")?;
+                number = i64::from(if reversed { i32::from_be_bytes(four) } else { i32::from_le_bytes(four) });
+                for _ in 0..components {
+                    let mut eight = [0; 8];
+                    self.s.exact(&mut eight, "more data")?;
+                    value = if reversed { f64::from_be_bytes(eight) } else { f64::from_le_bytes(eight) };
+                }
+            } else {
+                self.need_line(count, "values", i)?;
+                number = self.integer("a node or element number")?;
+                for _ in 0..components {
+                    let span = self.s.need_word("a value")?;
+                    value = self.s.number(span, "a value")?;
+                }
+            }
+            let numbers = if on_nodes { &self.nodes } else { &self.elements };
+            if let Some(position) = numbers.get(number) {
+                let position = position as usize;
+                if position >= values.len() {
+                    values.resize(n.max(position + 1), f64::NAN);
+                }
+                values[position] = value;
+                filled += 1;
+            }
+        }
+        self.close(section)?;
+        if components != 1 {
+            self.out.note(format!("array `{name}` with {components} components is not kept"));
+            return Ok(());
+        }
+        values.resize(n, f64::NAN);
+        if filled < n && name == "tag" {
+            // Points that are not named have no tag.
+            values.iter_mut().filter(|v| v.is_nan()).for_each(|v| *v = 0.0);
+        }
+        if on_nodes {
+            self.out.point_array(&name, &Values::Real(values));
+        } else {
+            self.out.cell_array(&name, &Values::Real(values), &self.slots);
+        }
+        Ok(())
+    }
+
+    pub(crate) fn skip_section(&mut self, name: &str) -> Result<(), ReadError> {
+        skip(&mut self.s, name)?;
+        self.out.ignore(&format!("${name} sections"));
+        Ok(())
+    }
+}
+
+/// Elements in the order they are written: type, nodes, tag; faces, hexes, then the others.
+pub(crate) fn elements(data: &MeshData) -> impl Iterator<Item = (i64, &[u32], i64)> {
+    let faces = data.tagged_faces().map(|(f, tag)| (if f.len() == 3 { TRIANGLE } else { QUAD }, f, tag));
+    let hexes = data.hexes.iter().enumerate().map(|(h, hex)| (HEX, hex.as_slice(), data.hex_tag(h)));
+    let tets = data.tets.iter().map(|c| (TET, c.as_slice(), 0));
+    let wedges = data.wedges.iter().map(|c| (WEDGE, c.as_slice(), 0));
+    let pyramids = data.pyramids.iter().map(|c| (PYRAMID, c.as_slice(), 0));
+    faces.chain(hexes).chain(tets).chain(wedges).chain(pyramids)
+}
+
+/// Dimension of an element type that is written.
+pub(crate) fn dimension(element_type: i64) -> u8 {
+    if element_type == TRIANGLE || element_type == QUAD { 2 } else { 3 }
+}
+
+/// The data sections at the end of a file.
+pub(crate) fn write_data(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
+    if let Some(tags) = &data.point_tags {
+        let values: Vec<f64> = tags.iter().map(|&t| t as f64).collect();
+        write_array(out, "NodeData", "tag", 1, &values)?;
+    }
+    for (name, values) in &data.point_data {
+        write_array(out, "NodeData", name, 1, values)?;
+    }
+    for (name, values) in &data.hex_data {
+        write_array(out, "ElementData", name, data.face_count() + 1, values)?;
+    }
+    Ok(())
+}
+
+fn write_array(out: &mut dyn Write, section: &str, name: &str, first: usize, values: &[f64]) -> io::Result<()> {
+    // One text, one time, three numbers: time step, components, count. NaN is left out: no value.
+    let count = values.iter().filter(|v| !v.is_nan()).count();
+    writeln!(out, "${section}\n1\n\"{}\"\n1\n0.0\n3\n0\n1\n{count}", unquoted(name))?;
+    for (i, &value) in values.iter().enumerate().filter(|(_, v)| !v.is_nan()) {
+        writeln!(out, "{} {}", first + i, Real(value))?;
+    }
+    writeln!(out, "$End{section}")
+}

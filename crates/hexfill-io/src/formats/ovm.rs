@@ -1,0 +1,430 @@
+//! OpenVolumeMesh ASCII (`.ovm`): edges as pairs of vertices, faces as cycles of half-edges, cells as sets of half-faces.
+//!
+//! Half-edge `2 e` runs as edge `e`, `2 e + 1` against it; half-face `2 f` is face `f`, `2 f + 1` its reverse. The half-faces of
+//! a cell are counter-clockwise seen from inside. On writing, the faces of the mesh come first, as they are, then the other
+//! facets of the hexes. On reading, the faces are those marked by our own property `hexfill:face`, otherwise all that have at most
+//! one cell. A second property keeps the first corner of each hex, because half-faces know the cell only up to rotation.
+
+use crate::assembly::Assembly;
+use crate::data::MeshData;
+use crate::error::ReadError;
+use crate::orders::OVM_HALF_FACES;
+use crate::source::{Source, reserve};
+use crate::write::{has_cell_tags, write_point};
+use rustc_hash::FxHashMap;
+use std::io::{self, Write};
+
+const FACE_MARK: &str = "hexfill:face";
+const CORNER_MARK: &str = "hexfill:corner";
+
+/// The cell types, by the corners of their half-faces in the file.
+#[derive(Default)]
+struct Properties {
+    point_tags: Option<Vec<i64>>,
+    face_tags: Option<Vec<i64>>,
+    cell_tags: Option<Vec<i64>>,
+    face_marks: Option<Vec<i64>>,
+    corners: Option<Vec<i64>>,
+}
+
+pub(crate) fn read(source: Source<'_>) -> Result<MeshData, ReadError> {
+    let mut s = source.with_comments(b'#');
+    let mut out = Assembly::default();
+    if !s.next_full_line()? {
+        return Err(s.empty());
+    }
+    let span = s.need_word("`OVM`")?;
+    if !s.text(span).eq_ignore_ascii_case(b"OVM") {
+        return Err(s.malformed("`OVM ASCII`", span, "is this an OVM file? (.ovmb is another format)"));
+    }
+    let span = s.need_word("`ASCII`")?;
+    if !s.text(span).eq_ignore_ascii_case(b"ASCII") {
+        return Err(s.unsupported("binary OVM", "save it as ASCII"));
+    }
+    let n = open_section(&mut s, "Vertices")?;
+    out.mesh.points.reserve(reserve(n));
+    for i in 0..n {
+        line(&mut s, n, "points", i)?;
+        out.mesh.points.push(s.point_on_line()?);
+    }
+    let n_points = out.mesh.points.len();
+    let n = open_section(&mut s, "Edges")?;
+    let mut edges: Vec<[u32; 2]> = Vec::with_capacity(reserve(n));
+    for i in 0..n {
+        line(&mut s, n, "edges", i)?;
+        let mut edge = [0; 2];
+        for end in &mut edge {
+            let span = s.need_word("a vertex")?;
+            *end = s.index(span, 0, n_points, "vertex")?;
+        }
+        edges.push(edge);
+    }
+    let n = open_section(&mut s, "Faces")?;
+    let mut faces: Vec<Vec<u32>> = Vec::with_capacity(reserve(n));
+    for i in 0..n {
+        line(&mut s, n, "faces", i)?;
+        faces.push(read_face(&mut s, &edges)?);
+    }
+    let n = open_section(&mut s, "Polyhedra")?;
+    let mut cells: Vec<Vec<u32>> = Vec::with_capacity(reserve(n));
+    // Per face: number of cells, and the last half-face of it that a cell has.
+    let mut cells_of_face = vec![(0u8, 0u32); faces.len()];
+    for i in 0..n {
+        line(&mut s, n, "polyhedra", i)?;
+        let span = s.need_word("the number of faces")?;
+        let sides = s.count(span, "faces")?;
+        let mut cell = Vec::new();
+        for _ in 0..sides {
+            let span = s.need_word(&format!("{sides} half-faces"))?;
+            let half_face = s.index(span, 0, 2 * faces.len(), "half-face")?;
+            let users = &mut cells_of_face[half_face as usize / 2];
+            *users = (users.0.saturating_add(1), half_face);
+            cell.push(half_face);
+        }
+        cells.push(cell);
+    }
+    let properties = read_properties(&mut s, &mut out, n_points, faces.len(), cells.len())?;
+    for (f, face) in faces.iter().enumerate() {
+        let listed = match &properties.face_marks {
+            Some(marks) => marks[f] != 0,
+            None => cells_of_face[f].0 <= 1,
+        };
+        if listed {
+            // Without marks the faces have no orientation of their own: one whose cell is on its inner side is turned outwards.
+            let mut face = face.clone();
+            if properties.face_marks.is_none() && cells_of_face[f].0 == 1 && cells_of_face[f].1.is_multiple_of(2) {
+                face[1..].reverse();
+            }
+            out.face(&face, properties.face_tags.as_ref().map_or(0, |t| t[f]));
+        }
+    }
+    for (c, cell) in cells.iter().enumerate() {
+        let tag = properties.cell_tags.as_ref().map_or(0, |t| t[c]);
+        let corner = properties.corners.as_ref().and_then(|t| u32::try_from(t[c]).ok());
+        add_cell(&s, &mut out, &faces, cell, corner, tag, c)?;
+    }
+    if let Some(tags) = properties.point_tags {
+        out.point_tags = tags;
+    }
+    Ok(out.finish())
+}
+
+fn line(s: &mut Source<'_>, n: u64, what: &str, i: u64) -> Result<(), ReadError> {
+    if s.next_full_line()? { Ok(()) } else { Err(s.truncated(format!("{n} {what}, found {i}"))) }
+}
+
+fn open_section(s: &mut Source<'_>, name: &str) -> Result<u64, ReadError> {
+    line(s, 1, &format!("sections {name}"), 0)?;
+    let span = s.need_word(name)?;
+    if !s.text(span).eq_ignore_ascii_case(name.as_bytes()) {
+        return Err(s.malformed(format!("`{name}`"), span, "correct the count of the section before"));
+    }
+    line(s, 1, "counts", 0)?;
+    let span = s.need_word("a count")?;
+    s.count(span, &name.to_lowercase())
+}
+
+/// The vertices of a face, from its half-edges.
+fn read_face(s: &mut Source<'_>, edges: &[[u32; 2]]) -> Result<Vec<u32>, ReadError> {
+    let span = s.need_word("the number of sides")?;
+    let sides = s.count(span, "sides")?;
+    if sides < 3 {
+        return Err(s.malformed("a face with three or more sides", span, "remove or complete the face"));
+    }
+    let mut face = Vec::new();
+    let mut first = 0;
+    let mut at = 0;
+    for k in 0..sides {
+        let span = s.need_word(&format!("{sides} half-edges"))?;
+        let half_edge = s.index(span, 0, 2 * edges.len(), "half-edge")? as usize;
+        let [mut from, mut to] = edges[half_edge / 2];
+        if half_edge % 2 == 1 {
+            std::mem::swap(&mut from, &mut to);
+        }
+        if k == 0 {
+            first = from;
+        } else if from != at {
+            return Err(s.malformed(
+                format!("a half-edge from vertex {at}"),
+                span,
+                "the half-edges of a face form a cycle",
+            ));
+        }
+        face.push(from);
+        at = to;
+    }
+    if at != first {
+        let given = format!("a path that ends at vertex {at}");
+        return Err(s.malformed_text(format!("a cycle back to vertex {first}"), given, "correct the half-edges"));
+    }
+    Ok(face)
+}
+
+fn read_properties(
+    s: &mut Source<'_>,
+    out: &mut Assembly,
+    n_points: usize,
+    n_faces: usize,
+    n_cells: usize,
+) -> Result<Properties, ReadError> {
+    let mut properties = Properties::default();
+    while s.next_full_line()? {
+        let text = String::from_utf8_lossy(s.line()).into_owned();
+        let mut words = text.split_whitespace();
+        let kind = words.next().unwrap_or_default().to_ascii_lowercase();
+        let scalar = words.next().unwrap_or_default().to_ascii_lowercase();
+        let name = text.split('"').nth(1).unwrap_or_default();
+        let whole = ["int", "long", "short", "unsigned int", "uint"].contains(&scalar.as_str());
+        let (slot, n) = match (kind.as_str(), name) {
+            ("vprop", "tag") => (&mut properties.point_tags, n_points),
+            ("fprop", "tag") => (&mut properties.face_tags, n_faces),
+            ("cprop", "tag") => (&mut properties.cell_tags, n_cells),
+            ("fprop", FACE_MARK) => (&mut properties.face_marks, n_faces),
+            ("cprop", CORNER_MARK) => (&mut properties.corners, n_cells),
+            _ => {
+                // How many lines a foreign property has depends on its type: everything but headers is skipped.
+                if kind.ends_with("prop") {
+                    out.ignore("properties");
+                }
+                continue;
+            }
+        };
+        if !whole {
+            out.ignore("properties");
+            continue;
+        }
+        let mut values = Vec::with_capacity(reserve(n as u64));
+        for i in 0..n {
+            line(s, n as u64, "values of the property", i as u64)?;
+            let span = s.need_word("a value")?;
+            values.push(s.integer(span, "a value")?);
+        }
+        *slot = Some(values);
+    }
+    Ok(properties)
+}
+
+/// Finds out what a cell is from its half-faces.
+fn add_cell(
+    s: &Source<'_>,
+    out: &mut Assembly,
+    faces: &[Vec<u32>],
+    cell: &[u32],
+    corner: Option<u32>,
+    tag: i64,
+    c: usize,
+) -> Result<(), ReadError> {
+    let cycles: Vec<Vec<u32>> = cell
+        .iter()
+        .map(|&half_face| {
+            let mut cycle = faces[half_face as usize / 2].clone();
+            if half_face % 2 == 1 {
+                cycle.reverse();
+            }
+            cycle
+        })
+        .collect();
+    let triangles = cycles.iter().filter(|c| c.len() == 3).count();
+    let quads = cycles.iter().filter(|c| c.len() == 4).count();
+    if triangles + quads != cycles.len() {
+        out.ignore("polyhedra that are no hexes");
+        return Ok(());
+    }
+    // The bottom: the triangle of a tet or wedge, the quad of a pyramid or hex.
+    let (bottom, n_nodes) = match (triangles, quads) {
+        (0, 6) => (0, 8),
+        (4, 0) => (0, 4),
+        (4, 1) => (cycles.iter().position(|c| c.len() == 4).unwrap_or(0), 5),
+        (2, 3) => (cycles.iter().position(|c| c.len() == 3).unwrap_or(0), 6),
+        _ => {
+            out.ignore("polyhedra that are no hexes");
+            return Ok(());
+        }
+    };
+    let nodes = corners(&cycles, bottom, n_nodes).ok_or_else(|| {
+        let given = format!("other half-faces in cell {c} (0-based)");
+        s.malformed_text(format!("the closed surface of a cell with {n_nodes} vertices"), given, "repair the cell")
+    })?;
+    if let Ok(mut hex) = <[u32; 8]>::try_from(nodes.as_slice()) {
+        if let Some(turns) = corner.and_then(|corner| hex[..4].iter().position(|&v| v == corner)) {
+            hex[..4].rotate_left(turns);
+            hex[4..].rotate_left(turns);
+        }
+        out.hex(hex, tag);
+    } else {
+        out.small_cell(&nodes, tag);
+    }
+    Ok(())
+}
+
+/// Nodes of a cell: the bottom cycle (seen from inside), then the vertex above each, then nothing else may be left.
+fn corners(cycles: &[Vec<u32>], bottom: usize, n_nodes: usize) -> Option<Vec<u32>> {
+    // Next vertex along each half-edge: a half-edge occurs once, its reverse in the neighbouring half-face.
+    let mut next = FxHashMap::default();
+    let mut vertices: Vec<u32> = cycles.iter().flatten().copied().collect();
+    for cycle in cycles {
+        for k in 0..cycle.len() {
+            let (a, b, c) = (cycle[k], cycle[(k + 1) % cycle.len()], cycle[(k + 2) % cycle.len()]);
+            if next.insert((a, b), c).is_some() {
+                return None;
+            }
+        }
+    }
+    if next.keys().any(|&(a, b)| a == b || !next.contains_key(&(b, a))) {
+        return None;
+    }
+    vertices.sort_unstable();
+    vertices.dedup();
+    if vertices.len() != n_nodes {
+        return None;
+    }
+    let base = &cycles[bottom];
+    let mut nodes = base.clone();
+    if n_nodes == 4 || n_nodes == 5 {
+        nodes.extend(vertices.iter().find(|v| !base.contains(v)));
+    } else {
+        for k in 0..base.len() {
+            // The side face across the edge to the next vertex runs from that vertex to this one and then up.
+            let above = *next.get(&(base[(k + 1) % base.len()], base[k]))?;
+            nodes.push(above);
+        }
+    }
+    let mut distinct = nodes.clone();
+    distinct.sort_unstable();
+    if distinct != vertices {
+        return None;
+    }
+    // The top cycle must run against the bottom one.
+    let top = &nodes[base.len()..];
+    let closed = top.len() < 3 || (0..top.len()).all(|k| next.contains_key(&(top[(k + 1) % top.len()], top[k])));
+    closed.then_some(nodes)
+}
+
+/// Edges and faces on writing, each found again by its vertices.
+#[derive(Default)]
+struct Topology {
+    edges: Vec<[u32; 2]>,
+    edge_of: FxHashMap<[u32; 2], u64>,
+    faces: Vec<Vec<u64>>,
+    /// From the smallest rotation of a cycle to its half-face.
+    half_face_of: FxHashMap<Vec<u32>, u64>,
+}
+
+/// The rotation of a cycle that starts at its smallest vertex.
+fn canonical(cycle: &[u32]) -> Vec<u32> {
+    let start = (0..cycle.len()).min_by_key(|&k| cycle[k]).unwrap_or(0);
+    let mut rotated = cycle.to_vec();
+    rotated.rotate_left(start);
+    rotated
+}
+
+impl Topology {
+    fn half_edge(&mut self, from: u32, to: u32) -> u64 {
+        if let Some(&edge) = self.edge_of.get(&[from, to]) {
+            return 2 * edge;
+        }
+        if let Some(&edge) = self.edge_of.get(&[to, from]) {
+            return 2 * edge + 1;
+        }
+        let edge = self.edges.len() as u64;
+        self.edges.push([from, to]);
+        self.edge_of.insert([from, to], edge);
+        2 * edge
+    }
+
+    fn add_face(&mut self, cycle: &[u32]) -> u64 {
+        let face = self.faces.len() as u64;
+        let half_edges = (0..cycle.len()).map(|k| self.half_edge(cycle[k], cycle[(k + 1) % cycle.len()])).collect();
+        self.faces.push(half_edges);
+        let reverse: Vec<u32> = cycle.iter().rev().copied().collect();
+        self.half_face_of.entry(canonical(cycle)).or_insert(2 * face);
+        self.half_face_of.entry(canonical(&reverse)).or_insert(2 * face + 1);
+        2 * face
+    }
+
+    fn half_face(&mut self, cycle: &[u32]) -> u64 {
+        match self.half_face_of.get(&canonical(cycle)) {
+            Some(&half_face) => half_face,
+            None => self.add_face(cycle),
+        }
+    }
+}
+
+pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
+    let mut topology = Topology::default();
+    for face in data.faces() {
+        topology.add_face(face);
+    }
+    let n_listed = topology.faces.len();
+    let mut cells: Vec<Vec<u64>> = Vec::new();
+    let mut add = |nodes: &[u32], half_faces: &[&[usize]]| {
+        cells.push(
+            half_faces
+                .iter()
+                .map(|corners| topology.half_face(&corners.iter().map(|&i| nodes[i]).collect::<Vec<_>>()))
+                .collect(),
+        );
+    };
+    for hex in &data.hexes {
+        add(hex, &OVM_HALF_FACES.each_ref().map(<[usize; 4]>::as_slice));
+    }
+    for tet in &data.tets {
+        add(tet, &[&[0, 1, 2], &[0, 2, 3], &[0, 3, 1], &[1, 3, 2]]);
+    }
+    for wedge in &data.wedges {
+        add(wedge, &[&[0, 1, 2], &[3, 5, 4], &[1, 0, 3, 4], &[2, 1, 4, 5], &[0, 2, 5, 3]]);
+    }
+    for pyramid in &data.pyramids {
+        add(pyramid, &[&[0, 1, 2, 3], &[1, 0, 4], &[2, 1, 4], &[3, 2, 4], &[0, 3, 4]]);
+    }
+    writeln!(out, "OVM ASCII\nVertices\n{}", data.points.len())?;
+    for point in &data.points {
+        write_point(out, point, " ")?;
+        out.write_all(b"\n")?;
+    }
+    writeln!(out, "Edges\n{}", topology.edges.len())?;
+    for [a, b] in &topology.edges {
+        writeln!(out, "{a} {b}")?;
+    }
+    writeln!(out, "Faces\n{}", topology.faces.len())?;
+    for face in &topology.faces {
+        write_list(out, face)?;
+    }
+    writeln!(out, "Polyhedra\n{}", cells.len())?;
+    for cell in &cells {
+        write_list(out, cell)?;
+    }
+    let n_other = topology.faces.len() - n_listed;
+    let face_marks = std::iter::repeat_n(1, n_listed).chain(std::iter::repeat_n(0, n_other));
+    property(out, "FProp", FACE_MARK, &face_marks.collect::<Vec<_>>())?;
+    let n_small = cells.len() - data.hexes.len();
+    let corners = data.hexes.iter().map(|hex| i64::from(hex[0])).chain(std::iter::repeat_n(-1, n_small));
+    property(out, "CProp", CORNER_MARK, &corners.collect::<Vec<_>>())?;
+    if let Some(tags) = &data.point_tags {
+        property(out, "VProp", "tag", tags)?;
+    }
+    if has_cell_tags(data) {
+        let face_tags = data.tagged_faces().map(|(_, tag)| tag).chain(std::iter::repeat_n(0, n_other));
+        property(out, "FProp", "tag", &face_tags.collect::<Vec<_>>())?;
+        let hex_tags = (0..data.hexes.len()).map(|h| data.hex_tag(h)).chain(std::iter::repeat_n(0, n_small));
+        property(out, "CProp", "tag", &hex_tags.collect::<Vec<_>>())?;
+    }
+    Ok(())
+}
+
+fn write_list(out: &mut dyn Write, items: &[u64]) -> io::Result<()> {
+    write!(out, "{}", items.len())?;
+    for item in items {
+        write!(out, " {item}")?;
+    }
+    out.write_all(b"\n")
+}
+
+fn property(out: &mut dyn Write, kind: &str, name: &str, values: &[i64]) -> io::Result<()> {
+    let wide = values.iter().any(|&v| i32::try_from(v).is_err());
+    writeln!(out, "{kind} {} \"{name}\"", if wide { "long" } else { "int" })?;
+    for value in values {
+        writeln!(out, "{value}")?;
+    }
+    Ok(())
+}

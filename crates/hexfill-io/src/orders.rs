@@ -1,0 +1,64 @@
+//! The one table of node orders. Everything inside the program is in the order of VTK_HEXAHEDRON
+//! (see the drawing in `hexfill_mesh::cube`), which is also that of Gmsh, MEDIT, Exodus, Abaqus (C3D8) and meshio.
+//!
+//! Each entry is a list of positions in the VTK order: `theirs[i] = vtk[TABLE[i]]`. The tables of
+//! [`VOXEL`], [`PIXEL`] and [`OVM_ADD_CELL`] are involutions, so the same line also goes back.
+//! Wedges and pyramids are passed on as they come: the formats agree on their order in practice.
+
+/// VTK_VOXEL (VTK cell type 11), geogram and ultimaille: x fastest, then y, then z.
+pub const VOXEL: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
+
+/// VTK_PIXEL (VTK cell type 8): x fastest, then y.
+pub const PIXEL: [usize; 4] = [0, 1, 3, 2];
+
+/// `add_cell` of OpenVolumeMesh's hexahedral kernel.
+pub const OVM_ADD_CELL: [usize; 8] = [0, 3, 2, 1, 4, 5, 6, 7];
+
+/// The six half-faces of a hexahedron in an OVM file, in the order `add_cell` makes them: opposite ones side by side,
+/// each counter-clockwise seen from *inside* the cell.
+pub const OVM_HALF_FACES: [[usize; 4]; 6] =
+    [[0, 1, 2, 3], [7, 6, 5, 4], [3, 2, 6, 7], [4, 5, 1, 0], [3, 7, 4, 0], [2, 1, 5, 6]];
+
+/// Puts the nodes of one order into the other (`PIXEL`, `VOXEL`, `OVM_ADD_CELL`: either way).
+#[inline]
+pub fn reorder<const N: usize>(nodes: [u32; N], table: [usize; N]) -> [u32; N] {
+    table.map(|i| nodes[i])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hexfill_mesh::cube::{FACETS, POSITIONS};
+
+    #[test]
+    fn tables_are_involutions() {
+        for table in [VOXEL, OVM_ADD_CELL] {
+            assert_eq!(table.map(|i| table[i]), [0, 1, 2, 3, 4, 5, 6, 7]);
+        }
+        assert_eq!(PIXEL.map(|i| PIXEL[i]), [0, 1, 2, 3]);
+    }
+
+    #[test]
+    fn voxel_counts_in_binary() {
+        for (i, &corner) in VOXEL.iter().enumerate() {
+            assert_eq!(POSITIONS[corner].map(usize::from), [i & 1, i >> 1 & 1, i >> 2]);
+        }
+    }
+
+    #[test]
+    fn half_faces_are_the_facets_seen_from_inside() {
+        for (k, half_face) in OVM_HALF_FACES.iter().enumerate() {
+            let mut outside = *half_face;
+            outside.reverse();
+            let is_rotation = |f: &[usize; 4]| {
+                (0..4).any(|r| {
+                    let mut turned = *f;
+                    turned.rotate_left(r);
+                    turned == outside
+                })
+            };
+            assert!(FACETS.iter().any(is_rotation), "half-face {k}");
+            assert!(half_face.iter().all(|c| !OVM_HALF_FACES[k ^ 1].contains(c)), "opposite ones side by side");
+        }
+    }
+}
