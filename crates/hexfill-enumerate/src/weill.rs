@@ -14,6 +14,7 @@ use crate::boundary::Boundary;
 use crate::complex::{Complex, FREE, MAX_CUBES, MAX_VERTICES, set_of, side_set_of};
 use crate::frames::EDGES_OFF;
 use hexfill_mesh::cube::{EDGES, FACETS};
+use std::collections::BTreeMap;
 
 /// The side of N over edge `i` of its bottom (from corner `i` to corner `i + 1`).
 const SIDE_OVER: [usize; 4] = [2, 1, 3, 0];
@@ -226,21 +227,29 @@ pub fn weill_violations(c: &Complex) -> Vec<String> {
             }
         }
     }
-    let mut uses = std::collections::BTreeMap::new();
-    for a in 0..c.n_cubes() {
-        for f in 0..6 {
-            if c.next[a][f] == FREE {
-                for k in 0..4 {
-                    let (v, w) = (c.cubes[a][FACETS[f][k]], c.cubes[a][FACETS[f][(k + 1) % 4]]);
-                    *uses.entry([v.min(w), v.max(w)]).or_insert(0) += 1;
-                }
-            }
-        }
-    }
-    for ([v, w], n) in uses {
+    for ([v, w], n) in boundary_edge_uses(c) {
         if n != 2 {
             out.push(format!("boundary edge v{v} v{w} is in {n} boundary quads"));
         }
     }
     out
+}
+
+/// Per edge of the boundary, the number of boundary quads that contain it.
+fn boundary_edge_uses(c: &Complex) -> BTreeMap<[u8; 2], u32> {
+    let mut uses = BTreeMap::new();
+    for a in 0..c.n_cubes() {
+        for f in (0..6).filter(|&f| c.next[a][f] == FREE) {
+            for k in 0..4 {
+                let (v, w) = (c.cubes[a][FACETS[f][k]], c.cubes[a][FACETS[f][(k + 1) % 4]]);
+                *uses.entry([v.min(w), v.max(w)]).or_insert(0) += 1;
+            }
+        }
+    }
+    uses
+}
+
+/// Rule 3: whether each boundary edge is in exactly two boundary quads.
+pub(crate) fn edges_are_manifold(c: &Complex) -> bool {
+    boundary_edge_uses(c).values().all(|&n| n == 2)
 }
