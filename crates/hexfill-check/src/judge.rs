@@ -1,7 +1,10 @@
 //! [`judge`]: every level in turn, and the report.
 
+use crate::geometry::positions::{judge_jacobians, judge_positions};
+use crate::geometry::quality::measure;
+use crate::geometry::volume::enclosed;
 use crate::input::{Judged, Options, Parts};
-use crate::report::{Ball, Facts, Findings, LevelReport, Offender, Outcome, Report};
+use crate::report::{Ball, Facts, Findings, Geometry, LevelReport, Offender, Outcome, Report};
 use crate::rule::{Level, Rule, Rules};
 use crate::topology::boundary::{compare, parts};
 use crate::topology::homology::homology;
@@ -9,6 +12,7 @@ use crate::topology::parity::ParityForest;
 use crate::topology::shape::judge_shape;
 use crate::topology::star::{BoundaryQuad, StarJudge, StarRules, StarSums};
 use crate::topology::stars::Stars;
+use crate::topology::weill::replay;
 use hexfill_mesh::{Context, StopReason};
 use rayon::prelude::*;
 
@@ -22,7 +26,8 @@ const BATCH: usize = 64;
 /// A level that fails does not hide the next ones: each is judged where the lower ones leave it a meaning (levels 2 to 5
 /// need level 1). When `ctx` says stop, the levels not finished are reported as not judged.
 pub fn judge(input: &Judged<'_>, options: &Options, ctx: &Context<'_>) -> Report {
-    let mut run = Run { input, options, ctx, findings: Findings::default(), facts: Facts::default(), done: 0 };
+    let mut run =
+        Run { input, options, ctx, findings: Findings::default(), facts: Facts::default(), geometry: None, done: 0 };
     run.facts.hexes = input.hexes.len() as u64;
     run.facts.vertices = input.n_vertices as u64;
     let why = run.levels();
@@ -46,6 +51,7 @@ pub fn judge(input: &Judged<'_>, options: &Options, ctx: &Context<'_>) -> Report
         levels,
         failures: run.findings.into_failures(),
         facts: run.facts,
+        geometry: run.geometry,
     }
 }
 
@@ -55,6 +61,7 @@ struct Run<'a> {
     ctx: &'a Context<'a>,
     findings: Findings,
     facts: Facts,
+    geometry: Option<Geometry>,
     /// How many levels were judged to the end.
     done: usize,
 }
@@ -86,13 +93,62 @@ impl Run<'_> {
             Err(why) => return Some(why),
         };
         self.findings.append(std::mem::take(&mut sums.findings));
+        if self.options.rules == Rules::Weill {
+            self.findings.append(replay(used, self.input.hexes));
+        }
         self.done = 2;
         if self.options.up_to == Level::L2 {
             return None;
         }
-        self.level_3(&stars, &forest, sums);
+        let boundary = std::mem::take(&mut sums.boundary);
+        self.level_3(&stars, &forest, &sums, &boundary);
         self.done = 3;
-        None
+        if self.options.up_to == Level::L3 {
+            return None;
+        }
+        let Some(points) = self.input.points else { return Some("no positions were given".into()) };
+        let found = judge_positions(self.input, points, &stars);
+        self.findings.append(found);
+        self.done = 4;
+        if self.options.up_to == Level::L4 {
+            return None;
+        }
+        if self.findings.count(Rule::PointsCount) + self.findings.count(Rule::PositionNotFinite) > 0 {
+            return Some("level 4 failed".into());
+        }
+        match self.level_5(points, &boundary) {
+            Ok(()) => None,
+            Err(why) => Some(why),
+        }
+    }
+
+    /// det J > 0 everywhere, hex by hex, and quality.
+    fn level_5(&mut self, points: &[[f64; 3]], boundary: &[BoundaryQuad]) -> Result<(), String> {
+        let hexes = self.input.hexes;
+        let mut geometry = Geometry::default();
+        for (b, batch) in hexes.chunks(CHUNK * BATCH).enumerate() {
+            if let Some(reason) = self.ctx.stop() {
+                return Err(stopped(reason));
+            }
+            self.ctx.report("check det J", (b * CHUNK * BATCH) as u64, Some(hexes.len() as u64), String::new);
+            let parts: Vec<Findings> = batch
+                .par_chunks(CHUNK)
+                .enumerate()
+                .map(|(i, chunk)| judge_jacobians((b * BATCH + i) * CHUNK, chunk, points))
+                .collect();
+            parts.into_iter().for_each(|part| self.findings.append(part));
+        }
+        self.done = 5;
+        let bad = |rule| self.findings.count(rule);
+        geometry.not_positive = bad(Rule::HexInsideOut) + bad(Rule::JacobianNotPositive);
+        geometry.undecided = bad(Rule::JacobianUndecided);
+        geometry.certified = hexes.len() as u64 - geometry.not_positive - geometry.undecided;
+        if self.options.quality {
+            let valid = geometry.certified == hexes.len() as u64;
+            geometry.quality = measure(hexes, points, enclosed(boundary, points), valid, self.ctx);
+        }
+        self.geometry = Some(geometry);
+        Ok(())
     }
 
     /// Judges the star of every vertex.
@@ -133,17 +189,17 @@ impl Run<'_> {
         Ok(sums)
     }
 
-    fn level_3(&mut self, stars: &Stars, forest: &ParityForest, sums: StarSums) {
+    fn level_3(&mut self, stars: &Stars, forest: &ParityForest, sums: &StarSums, boundary: &[BoundaryQuad]) {
         let facts = &mut self.facts;
         facts.unused_vertices = self.input.n_vertices as u64 - sums.used;
         facts.interior_vertices = Some(sums.used - sums.on_boundary);
         facts.edges = Some(sums.edges);
         facts.quads = Some(sums.quads);
-        facts.boundary_quads = Some(sums.boundary.len() as u64);
+        facts.boundary_quads = Some(boundary.len() as u64);
         facts.euler = Some(sums.used as i64 - sums.edges as i64 + sums.quads as i64 - self.input.hexes.len() as i64);
-        facts.boundary = parts(&sums.boundary);
+        facts.boundary = parts(boundary);
         if let Some(surface) = self.input.surface {
-            let (found, sense) = compare(&sums.boundary, surface, self.input.hexes, stars);
+            let (found, sense) = compare(boundary, surface, self.input.hexes, stars);
             self.findings.append(found);
             self.facts.surface_sense = sense;
         }
@@ -151,7 +207,7 @@ impl Run<'_> {
         if self.findings.count(Rule::QuadInThreeHexes) == 0 {
             self.orientation(forest, &sums.not_orientable);
         }
-        self.parts(forest, &sums.boundary);
+        self.parts(forest, boundary);
         self.homology(stars);
     }
 

@@ -15,13 +15,17 @@
 //! assert_eq!(report.facts.betti, Some([1, 0, 0, 0]));
 //! ```
 
+mod certificate;
+mod geometry;
 mod input;
 mod judge;
 mod report;
 mod rule;
 mod topology;
 
+pub use certificate::{Certificate, CertificateError, certificate_of, certify, verify_certificate};
+pub use geometry::quality::{CellQuality, Quality, WorstCell, cell_quality, write_cell_csv};
 pub use input::{Judged, Options, Parts};
 pub use judge::judge;
-pub use report::{Ball, BoundaryPart, Facts, Failure, LevelReport, Offender, Outcome, Report, SurfaceSense};
+pub use report::{Ball, BoundaryPart, Facts, Failure, Geometry, LevelReport, Offender, Outcome, Report, SurfaceSense};
 pub use rule::{Level, Rule, Rules};

@@ -1,5 +1,6 @@
 //! What the judge says: which level passed, which rule fails where, and facts about the mesh.
 
+use crate::geometry::quality::Quality;
 use crate::rule::{Level, Rule, Rules};
 use hexfill_mesh::{HexId, QuadId, VertexId};
 use serde::Serialize;
@@ -187,6 +188,52 @@ pub struct Report {
     pub failures: Vec<Failure>,
     /// Numbers about the connectivity.
     pub facts: Facts,
+    /// Numbers about the geometry; absent if level 5 was not judged.
+    pub geometry: Option<Geometry>,
+}
+
+/// Numbers about the geometry.
+#[derive(Clone, Debug, PartialEq, Default, Serialize)]
+pub struct Geometry {
+    /// Hexes with det J > 0 certified everywhere.
+    pub certified: u64,
+    /// Hexes with a point at which det J is zero or negative.
+    pub not_positive: u64,
+    /// Hexes for which neither was shown.
+    pub undecided: u64,
+    /// Quality numbers; absent if not asked for.
+    pub quality: Option<Quality>,
+}
+
+impl fmt::Display for Geometry {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "det J > 0 certified in {} hexes, not positive in {}, undecided in {}",
+            self.certified, self.not_positive, self.undecided
+        )?;
+        let Some(q) = &self.quality else { return Ok(()) };
+        writeln!(
+            f,
+            "scaled Jacobian: corners {:.6} (mean {:.6}), Verdict {:.6}, certified {:.9} .. {:.9}",
+            q.min_corner_scaled_jacobian,
+            q.mean_corner_scaled_jacobian,
+            q.min_verdict_scaled_jacobian,
+            q.certified_scaled_jacobian[0],
+            q.certified_scaled_jacobian[1]
+        )?;
+        writeln!(f, "condition at most {:.4}, edge ratio at most {:.4}", q.max_condition, q.max_edge_ratio)?;
+        writeln!(f, "volume: hexes {:e}, enclosed by the boundary {:e}", q.volume, q.boundary_volume)?;
+        write!(f, "corner scaled Jacobian:")?;
+        for (i, &count) in q.histogram.iter().enumerate().filter(|x| *x.1 > 0) {
+            write!(f, " [{:.1} {:.1}) {count}", i as f64 / 10.0 - 1.0, (i + 1) as f64 / 10.0 - 1.0)?;
+        }
+        write!(f, "\nworst:")?;
+        for worst in &q.worst {
+            write!(f, " {} {:.6}", HexId(worst.hex), worst.corner_scaled_jacobian)?;
+        }
+        writeln!(f)
+    }
 }
 
 impl Report {
@@ -251,7 +298,8 @@ impl fmt::Display for Report {
                 }
             }
         }
-        write!(f, "{}", self.facts)
+        write!(f, "{}", self.facts)?;
+        self.geometry.as_ref().map_or(Ok(()), |g| write!(f, "{g}"))
     }
 }
 

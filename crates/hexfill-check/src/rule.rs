@@ -98,6 +98,7 @@ rules! {
     FaceDiagonalIsBodyDiagonal = "face-diagonal-is-body-diagonal" @ L2: "a face diagonal of one hex is a body diagonal of another";
     BodyDiagonalShared = "body-diagonal-shared" @ L2: "two hexes share both ends of a body diagonal";
     WeillNotGlued = "weill-not-glued" @ L2: "a hex is glued to no exterior quad of the hexes before it";
+    WeillMergesVertex = "weill-merges-vertex" @ L2: "a corner of the new hex outside its glued facets is an old vertex";
     WeillQuadNotExterior = "weill-quad-not-exterior" @ L2: "a facet of the new hex is a quad that is already interior, or one in another cyclic order";
     WeillFreeFacetTouches = "weill-free-facet-touches" @ L2: "a free facet of the new hex shares more than two vertices with an earlier hex";
     WeillSharesFive = "weill-shares-five" @ L2: "a new hex shares more than four vertices with an earlier hex";

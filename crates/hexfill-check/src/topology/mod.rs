@@ -7,3 +7,4 @@ pub(crate) mod parity;
 pub(crate) mod shape;
 pub(crate) mod star;
 pub(crate) mod stars;
+pub(crate) mod weill;

@@ -1,0 +1,13 @@
+//! Levels 4 and 5: everything that needs coordinates.
+//!
+//! Source: A. Johnen, J.-C. Weill, J.-F. Remacle, "Robust and efficient validation of the linear hexahedral element", Procedia
+//! Engineering 203 (2017), arXiv:1706.01613. The determinant of the trilinear map is tri-quadratic; its 27 Bernstein
+//! coefficients bound it on the whole hex.
+
+pub(crate) mod bernstein;
+pub(crate) mod exact;
+pub(crate) mod positions;
+pub(crate) mod positivity;
+pub(crate) mod quality;
+pub(crate) mod scaled;
+pub(crate) mod volume;

@@ -1,0 +1,64 @@
+//! Level 5 for one hex: a floating-point filter with proved error bounds, bisection, and exact arithmetic where they leave a
+//! doubt.
+
+use super::bernstein::{CORNERS, Cell, ERROR, Frame, UNIT, Vector, halve};
+use super::exact;
+
+/// What is known about det J of a hex.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Positivity {
+    /// Positive everywhere.
+    Positive,
+    /// Negative at all eight corners.
+    InsideOut,
+    /// Zero or negative at a point of the unit cube.
+    NotPositive { at: Vector, zero: bool },
+    /// The depth limit was reached.
+    Undecided,
+}
+
+/// Boxes that floating-point bisection may visit before exact arithmetic takes over.
+const FLOAT_BOXES: usize = 200;
+
+/// The quick test: true only if det J > 0 on the whole hex is certain. No allocation.
+#[inline]
+pub(crate) fn surely_positive(p: &[Vector; 8]) -> bool {
+    let frame = Frame::new(p);
+    let Some(size) = frame.safe_size() else { return false };
+    let b = frame.coefficients();
+    let least = b.iter().fold(f64::INFINITY, |m, &x| m.min(x));
+    least > ERROR * size
+}
+
+/// Decides det J > 0 on the whole hex. All coordinates are finite.
+pub(crate) fn decide(p: &[Vector; 8]) -> Positivity {
+    let frame = Frame::new(p);
+    let Some(size) = frame.safe_size() else { return exact::positivity(p) };
+    let b = frame.coefficients();
+    let most = b.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+    let mut boxes = vec![(b, ERROR * size, Cell::WHOLE)];
+    let mut visited = 0;
+    while let Some((b, error, cell)) = boxes.pop() {
+        visited += 1;
+        if b.iter().all(|&x| x > error) {
+            continue;
+        }
+        let bad = (0..8).find(|&i| b[CORNERS[i]] < -error);
+        if let Some(i) = bad {
+            if cell.depth == 0 && CORNERS.iter().all(|&c| b[c] < -error) {
+                return Positivity::InsideOut;
+            }
+            return Positivity::NotPositive { at: cell.corner(i), zero: false };
+        }
+        // A value at a corner of the box that may be zero is for exact arithmetic to decide.
+        if visited >= FLOAT_BOXES || CORNERS.iter().any(|&c| b[c] <= error) {
+            return exact::positivity(p);
+        }
+        let [low, high] = halve(&b, cell.axis());
+        let [low_cell, high_cell] = cell.halves();
+        let error = error + 4.0 * UNIT * most * 1.01;
+        boxes.push((high, error, high_cell));
+        boxes.push((low, error, low_cell));
+    }
+    Positivity::Positive
+}

@@ -1,0 +1,290 @@
+//! Quality numbers of hexes: scaled Jacobian at the corners, Verdict's, certified; condition number, edge ratio, volume.
+
+use super::bernstein::{Frame, Vector, cross, dot, norm};
+use super::positivity::{Positivity, decide};
+use super::scaled::{Effort, least, normalised};
+use super::volume::Sum;
+use crate::input::Judged;
+use hexfill_mesh::Context;
+use rayon::prelude::*;
+use serde::Serialize;
+use std::io::{self, Write};
+
+/// Hexes measured as one task; fixed, so that sums do not depend on the number of threads.
+const CHUNK: usize = 1 << 12;
+/// Tasks between two looks at the context.
+const BATCH: usize = 64;
+
+/// The numbers of one hex. All ratios are free of units; the cube has 1 everywhere.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct CellQuality {
+    /// Least scaled Jacobian at the 8 corners: det of the three unit edge vectors there.
+    pub corner_scaled_jacobian: f64,
+    /// Verdict's and VTK's scaled Jacobian: the corners and the centre.
+    pub verdict_scaled_jacobian: f64,
+    /// Certified lower bound of the scaled Jacobian over the whole hex; -1 if the hex is not valid.
+    pub certified_lower: f64,
+    /// Upper bound of the least scaled Jacobian over the whole hex.
+    pub certified_upper: f64,
+    /// Whether det J > 0 on the whole hex is certain.
+    pub valid: bool,
+    /// Largest condition number of J at the 8 corners, Frobenius norm divided by 3; infinite where det J <= 0.
+    pub condition: f64,
+    /// Longest edge by shortest edge.
+    pub edge_ratio: f64,
+    /// Volume, in the units of the positions cubed.
+    pub volume: f64,
+}
+
+/// The cheap numbers of a hex.
+struct Sampled {
+    corner: f64,
+    verdict: f64,
+    condition: f64,
+    edge_ratio: f64,
+    volume: f64,
+}
+
+fn scaled_jacobian(e: [Vector; 3]) -> f64 {
+    let product = norm(e[0]) * norm(e[1]) * norm(e[2]);
+    // A collapsed edge: no direction, so no better than flat.
+    if product > 0.0 { (dot(e[0], cross(e[1], e[2])) / product).clamp(-1.0, 1.0) } else { 0.0 }
+}
+
+fn sample(p: &[Vector; 8]) -> Sampled {
+    let q = normalised(p);
+    let frame = Frame::new(&q);
+    let e = &frame.e;
+    let (mut corner, mut condition) = (1.0f64, 0.0f64);
+    for i in 0..8 {
+        let (a, b, c) = (i & 1, i >> 1 & 1, i >> 2);
+        let v = [e[0][b + 2 * c], e[1][a + 2 * c], e[2][a + 2 * b]];
+        corner = corner.min(scaled_jacobian(v));
+        let crosses = [cross(v[1], v[2]), cross(v[2], v[0]), cross(v[0], v[1])];
+        let det = dot(v[0], crosses[0]);
+        let square = |m: &[Vector; 3]| m.iter().map(|&x| dot(x, x)).sum::<f64>();
+        let here = (square(&v) * square(&crosses)).sqrt() / (3.0 * det);
+        condition = condition.max(if det > 0.0 { here } else { f64::INFINITY });
+    }
+    let axes = e.map(|t| std::array::from_fn(|k| t[0][k] + t[1][k] + t[2][k] + t[3][k]));
+    let lengths = e.iter().flatten().map(|&v| norm(v));
+    let (short, long) = lengths.fold((f64::INFINITY, 0.0f64), |(s, l), n| (s.min(n), l.max(n)));
+    let volume = Frame::new(p).coefficients().iter().sum::<f64>() / 27.0;
+    Sampled { corner, verdict: corner.min(scaled_jacobian(axes)), condition, edge_ratio: long / short, volume }
+}
+
+/// A hex and its scaled Jacobian, for the list of the worst.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct WorstCell {
+    /// The hex.
+    pub hex: u32,
+    /// Its least scaled Jacobian at the corners.
+    pub corner_scaled_jacobian: f64,
+}
+
+/// Quality of a whole mesh.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Quality {
+    /// Least scaled Jacobian at corners.
+    pub min_corner_scaled_jacobian: f64,
+    /// Mean over the hexes of the least scaled Jacobian at corners.
+    pub mean_corner_scaled_jacobian: f64,
+    /// Least of Verdict's scaled Jacobian (corners and centre).
+    pub min_verdict_scaled_jacobian: f64,
+    /// Certified interval of the least scaled Jacobian over all points of all hexes.
+    pub certified_scaled_jacobian: [f64; 2],
+    /// Largest condition number.
+    pub max_condition: f64,
+    /// Largest edge ratio.
+    pub max_edge_ratio: f64,
+    /// Sum of the hexes' volumes.
+    pub volume: f64,
+    /// Volume enclosed by the boundary.
+    pub boundary_volume: f64,
+    /// Hexes by corner scaled Jacobian: 20 bins from -1 to 1.
+    pub histogram: [u64; 20],
+    /// The worst hexes by corner scaled Jacobian, at most ten, worst first.
+    pub worst: Vec<WorstCell>,
+}
+
+fn gather(hex: &[u32; 8], points: &[Vector]) -> [Vector; 8] {
+    hex.map(|v| points[v as usize])
+}
+
+#[derive(Default)]
+struct Sums {
+    corner: f64,
+    verdict: f64,
+    mean: Sum,
+    volume: Sum,
+    condition: f64,
+    edge_ratio: f64,
+    histogram: [u64; 20],
+    worst: Vec<WorstCell>,
+}
+
+impl Sums {
+    fn worst_first(&mut self) {
+        self.worst
+            .sort_by(|a, b| a.corner_scaled_jacobian.total_cmp(&b.corner_scaled_jacobian).then(a.hex.cmp(&b.hex)));
+        self.worst.truncate(10);
+    }
+}
+
+fn sums(first: usize, hexes: &[[u32; 8]], points: &[Vector]) -> Sums {
+    let mut all = Sums { corner: 1.0, verdict: 1.0, ..Sums::default() };
+    let mut bar = f64::INFINITY;
+    for (i, hex) in hexes.iter().enumerate() {
+        let s = sample(&gather(hex, points));
+        all.corner = all.corner.min(s.corner);
+        all.verdict = all.verdict.min(s.verdict);
+        all.mean.add(s.corner);
+        all.volume.add(s.volume);
+        all.condition = all.condition.max(s.condition);
+        all.edge_ratio = all.edge_ratio.max(s.edge_ratio);
+        all.histogram[((s.corner + 1.0) * 10.0).clamp(0.0, 19.0) as usize] += 1;
+        if s.corner < bar {
+            all.worst.push(WorstCell { hex: (first + i) as u32, corner_scaled_jacobian: s.corner });
+            if all.worst.len() >= 64 {
+                all.worst_first();
+                bar = all.worst[9].corner_scaled_jacobian;
+            }
+        }
+    }
+    all.worst_first();
+    all
+}
+
+/// Measures a mesh whose hexes are all in range and whose positions are all finite; `valid` says whether det J > 0 was
+/// certified for every hex. `None` if it was stopped.
+pub(crate) fn measure(
+    hexes: &[[u32; 8]],
+    points: &[Vector],
+    boundary_volume: f64,
+    valid: bool,
+    ctx: &Context<'_>,
+) -> Option<Quality> {
+    let mut total = Sums { corner: 1.0, verdict: 1.0, ..Sums::default() };
+    for (b, batch) in hexes.chunks(CHUNK * BATCH).enumerate() {
+        if ctx.stop().is_some() {
+            return None;
+        }
+        ctx.report("check quality", (b * CHUNK * BATCH) as u64, Some(2 * hexes.len() as u64), String::new);
+        let parts: Vec<Sums> = batch
+            .par_chunks(CHUNK)
+            .enumerate()
+            .map(|(i, chunk)| sums((b * BATCH + i) * CHUNK, chunk, points))
+            .collect();
+        for part in parts {
+            total.corner = total.corner.min(part.corner);
+            total.verdict = total.verdict.min(part.verdict);
+            total.mean.add(part.mean.value());
+            total.volume.add(part.volume.value());
+            total.condition = total.condition.max(part.condition);
+            total.edge_ratio = total.edge_ratio.max(part.edge_ratio);
+            total.histogram.iter_mut().zip(part.histogram).for_each(|(a, b)| *a += b);
+            total.worst.extend(part.worst);
+            total.worst_first();
+        }
+    }
+    // A hex whose lower bound reaches the least sampled value cannot lower the minimum.
+    let effort = Effort { enough: total.corner, width: 1e-9, boxes: 20_000 };
+    let (mut lower, mut upper) = (1.0f64, 1.0f64);
+    for (b, batch) in hexes.chunks(CHUNK * BATCH).enumerate() {
+        if ctx.stop().is_some() {
+            return None;
+        }
+        let done = (hexes.len() + b * CHUNK * BATCH) as u64;
+        ctx.report("check quality", done, Some(2 * hexes.len() as u64), String::new);
+        let parts: Vec<(f64, f64)> = batch
+            .par_chunks(CHUNK)
+            .map(|chunk| {
+                chunk
+                    .iter()
+                    .map(|hex| least(&gather(hex, points), effort))
+                    .fold((1.0, 1.0), |(low, high), x| (f64::min(low, x.lower), f64::min(high, x.upper)))
+            })
+            .collect();
+        for (low, high) in parts {
+            lower = lower.min(low);
+            upper = upper.min(high);
+        }
+    }
+    if valid {
+        // det J > 0 was proved; where the bound could not show that much it is still true.
+        lower = lower.max(0.0);
+        upper = upper.max(0.0);
+    }
+    Some(Quality {
+        min_corner_scaled_jacobian: total.corner,
+        mean_corner_scaled_jacobian: total.mean.value() / hexes.len() as f64,
+        min_verdict_scaled_jacobian: total.verdict,
+        certified_scaled_jacobian: [lower, upper],
+        max_condition: total.condition,
+        max_edge_ratio: total.edge_ratio,
+        volume: total.volume.value(),
+        boundary_volume,
+        histogram: total.histogram,
+        worst: total.worst,
+    })
+}
+
+/// The numbers of every hex, in order, on the current rayon pool. `None` where a hex has an index out of range or a position
+/// that is not finite, or no positions were given.
+pub fn cell_quality(input: &Judged<'_>) -> Vec<Option<CellQuality>> {
+    let points = input.points.unwrap_or_default();
+    let effort = Effort { enough: f64::INFINITY, width: 1e-6, boxes: 2_000 };
+    input
+        .hexes
+        .par_iter()
+        .map(|hex| {
+            if hex.iter().any(|&v| points.get(v as usize).is_none_or(|p| p.iter().any(|x| !x.is_finite()))) {
+                return None;
+            }
+            let p = gather(hex, points);
+            let s = sample(&p);
+            let valid = decide(&p) == Positivity::Positive;
+            let bound = least(&p, effort);
+            let floor = if valid { 0.0 } else { -1.0 };
+            Some(CellQuality {
+                corner_scaled_jacobian: s.corner,
+                verdict_scaled_jacobian: s.verdict,
+                certified_lower: if valid { bound.lower.max(floor) } else { floor },
+                certified_upper: bound.upper.max(floor),
+                valid,
+                condition: s.condition,
+                edge_ratio: s.edge_ratio,
+                volume: s.volume,
+            })
+        })
+        .collect()
+}
+
+/// Writes [`cell_quality`] as CSV: a header, then a line a hex; empty fields where there is no number.
+///
+/// # Errors
+/// What the writer says.
+pub fn write_cell_csv(cells: &[Option<CellQuality>], out: &mut impl Write) -> io::Result<()> {
+    writeln!(
+        out,
+        "hex,valid,corner_scaled_jacobian,verdict_scaled_jacobian,certified_lower,certified_upper,condition,edge_ratio,volume"
+    )?;
+    for (h, cell) in cells.iter().enumerate() {
+        match cell {
+            None => writeln!(out, "{h},,,,,,,,")?,
+            Some(c) => writeln!(
+                out,
+                "{h},{},{},{},{},{},{},{},{}",
+                c.valid,
+                c.corner_scaled_jacobian,
+                c.verdict_scaled_jacobian,
+                c.certified_lower,
+                c.certified_upper,
+                c.condition,
+                c.edge_ratio,
+                c.volume
+            )?,
+        }
+    }
+    Ok(())
+}

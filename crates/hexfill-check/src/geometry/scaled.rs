@@ -1,0 +1,152 @@
+//! A certified interval for the least scaled Jacobian over a whole hex.
+//!
+//! SJ = det J / (|J1| |J2| |J3|). On a box with Bernstein coefficients B of det J and N of the product of norms (see
+//! [`Frame::norm_products`]), `SJ >= min B/N` wherever that is not negative; values at corners of boxes bound the minimum from
+//! above. The box with the smallest lower bound is halved until the interval is short. Rounding goes outward.
+
+use super::bernstein::{CORNERS, Cell, ERROR, Frame, UNIT, Vector, halve, norm};
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+/// Lower and upper bound of the least scaled Jacobian of a hex.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Interval {
+    pub(crate) lower: f64,
+    pub(crate) upper: f64,
+}
+
+/// When to stop halving.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Effort {
+    /// A lower bound of this is enough.
+    pub(crate) enough: f64,
+    /// An interval of this length is enough.
+    pub(crate) width: f64,
+    /// Boxes at most.
+    pub(crate) boxes: usize,
+}
+
+struct Part {
+    lower: f64,
+    frame: Frame,
+    b: [f64; 27],
+    error: f64,
+    cell: Cell,
+}
+
+impl PartialEq for Part {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Part {}
+
+impl PartialOrd for Part {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Part {
+    /// The heap gives the smallest lower bound first.
+    fn cmp(&self, other: &Self) -> Ordering {
+        other.lower.total_cmp(&self.lower)
+    }
+}
+
+/// The hex moved and scaled by a power of two to unit size, so that nothing overflows or underflows. Scaling is exact but for
+/// numbers that vanish beside the size of the hex; the slack of the norms and the error of the coefficients cover those.
+pub(crate) fn normalised(p: &[Vector; 8]) -> [Vector; 8] {
+    let size = p.iter().flatten().fold(0.0, |m: f64, x| m.max(x.abs()));
+    let scale = |v: f64, by: i32| {
+        let half = by / 2;
+        v * 2f64.powi(half) * 2f64.powi(by - half)
+    };
+    if !(1e-60..=1e60).contains(&size) && size > 0.0 {
+        let down = -exponent(size);
+        let q = p.map(|v| v.map(|x| scale(x, down)));
+        return spread(&q);
+    }
+    spread(p)
+}
+
+fn exponent(x: f64) -> i32 {
+    // frexp for positive finite numbers, subnormals included.
+    let field = (x.to_bits() >> 52 & 0x7ff) as i32;
+    if field == 0 { exponent(x * 2f64.powi(64)) - 64 } else { field - 1023 }
+}
+
+/// Brings tiny hexes to unit size; exact for differences.
+fn spread(p: &[Vector; 8]) -> [Vector; 8] {
+    let frame = Frame::new(p);
+    let size = frame.sizes().into_iter().fold(0.0, f64::max);
+    if size == 0.0 || (1e-60..=1e60).contains(&size) {
+        return *p;
+    }
+    // Far smaller than its distance from the origin cannot be below 1e-60 relative; so the hex is near the origin.
+    let by = -exponent(size);
+    let half = by / 2;
+    p.map(|v| v.map(|x| x * 2f64.powi(half) * 2f64.powi(by - half)))
+}
+
+fn part(frame: Frame, b: [f64; 27], error: f64, cell: Cell, slack: f64, upper: &mut f64) -> Part {
+    let n = frame.norm_products(slack);
+    let mut lower = f64::INFINITY;
+    for i in 0..27 {
+        let certain = b[i] - error;
+        // A negative bound holds as well with the norms as they are only down to -1.
+        let ratio = if certain > 0.0 { certain / n[i] * (1.0 - 4.0 * UNIT) } else { -1.0 };
+        lower = lower.min(ratio);
+    }
+    for (i, &c) in CORNERS.iter().enumerate() {
+        let (x, y, z) = (i & 1, i >> 1 & 1, i >> 2);
+        let norms = [norm(frame.e[0][y + 2 * z]), norm(frame.e[1][x + 2 * z]), norm(frame.e[2][x + 2 * y])];
+        // Rounded up: divide a positive value by less than the norms, a negative one by more.
+        let value = b[c] + error;
+        let away = if value > 0.0 { -slack } else { slack };
+        let product = norms.iter().fold(1.0, |p, n| p * (n + away));
+        if norms.iter().all(|&n| n > 2.0 * slack) {
+            let ratio = value / product;
+            *upper = upper.min((ratio + ratio.abs() * 32.0 * UNIT).clamp(-1.0, 1.0));
+        }
+    }
+    Part { lower, frame, b, error, cell }
+}
+
+/// The least scaled Jacobian of a hex over all of it. All coordinates are finite. For a hex that is not valid the lower bound
+/// is -1.
+pub(crate) fn least(p: &[Vector; 8], effort: Effort) -> Interval {
+    let frame = Frame::new(&normalised(p));
+    let Some(size) = frame.safe_size() else { return Interval { lower: -1.0, upper: 1.0 } };
+    let longest = frame.sizes().into_iter().fold(0.0, f64::max);
+    let b = frame.coefficients();
+    let most = b.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+    let step = 4.0 * UNIT * most * 1.01;
+    // Rounding of the edge vectors themselves; grows with the depth, at most 100 halvings.
+    let slack = 1e-14 * longest;
+    let mut upper = 1.0;
+    let whole = part(frame, b, ERROR * size, Cell::WHOLE, slack, &mut upper);
+    if whole.lower >= effort.enough || upper - whole.lower <= effort.width {
+        return Interval { lower: whole.lower.min(upper), upper };
+    }
+    let mut heap = BinaryHeap::new();
+    heap.push(whole);
+    let mut visited = 1;
+    while let Some(worst) = heap.peek() {
+        let lower = worst.lower;
+        let done = lower >= effort.enough || upper - lower <= effort.width || upper <= 0.0;
+        if done || visited >= effort.boxes || worst.cell.depth >= 100 {
+            return Interval { lower: lower.min(upper), upper };
+        }
+        let Some(Part { frame, b, error, cell, .. }) = heap.pop() else { break };
+        let axis = cell.axis();
+        let [low, high] = halve(&b, axis);
+        let [low_frame, high_frame] = frame.halves(axis);
+        let [low_cell, high_cell] = cell.halves();
+        heap.push(part(low_frame, low, error + step, low_cell, slack, &mut upper));
+        heap.push(part(high_frame, high, error + step, high_cell, slack, &mut upper));
+        visited += 2;
+    }
+    Interval { lower: -1.0, upper }
+}
