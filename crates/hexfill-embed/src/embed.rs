@@ -228,6 +228,8 @@ struct Search<'a> {
 struct Candidate {
     number: u32,
     points: Vec<Vector>,
+    /// The points before quality was raised.
+    untangled: Vec<Vector>,
     n_bad: usize,
     /// The worst scaled Jacobian.
     value: f64,
@@ -314,6 +316,7 @@ impl Search<'_> {
         let climbs = self.options.objective != Objective::UntangleOnly && bad.is_empty();
         let target = self.upper_bound - 1e-9;
         let mut value = f64::NEG_INFINITY;
+        let untangled = points.clone();
         if climbs && stopped.is_none() {
             if n_hexes <= self.options.whole_limit {
                 let limits = maxmin::Limits { iterations: self.options.programs, band: 0.3, tolerance: 1e-9 };
@@ -329,7 +332,7 @@ impl Search<'_> {
         if value == f64::NEG_INFINITY {
             value = maxmin::judge(problem, &points, 1.0).worst;
         }
-        Candidate { number, points, n_bad: bad.len(), value, stopped }
+        Candidate { number, points, untangled, n_bad: bad.len(), value, stopped }
     }
 
     /// Lowers the condition numbers of the good candidates and puts the best first.
@@ -342,18 +345,38 @@ impl Search<'_> {
         let limits = maxmin::Limits { iterations: self.options.programs, band: 0.1, tolerance: 1e-4 };
         let stops: Vec<Option<StopReason>> = found
             .par_iter_mut()
-            .map(|c| maxmin::climb(problem, &mut c.points, Goal::Condition { floor }, limits, &quiet).stopped)
+            .map(|c| {
+                // The optimum is often thin; the way up passes the floor in better shape. Try both, keep the better.
+                let mut early = c.untangled.clone();
+                let rise = maxmin::Limits { tolerance: 1e-6, ..limits };
+                let target = Goal::ScaledJacobian { target: floor + 1e-3 * floor.abs() };
+                let up = maxmin::climb(problem, &mut early, target, rise, &quiet);
+                let goal = Goal::Condition { floor };
+                let late = maxmin::climb(problem, &mut c.points, goal, limits, &quiet);
+                let mut stopped = up.stopped.or(late.stopped);
+                if up.scaled_jacobian >= floor && bad_cells(problem, &early).is_empty() {
+                    stopped = stopped.or(maxmin::climb(problem, &mut early, goal, limits, &quiet).stopped);
+                    if self.condition(&early) < self.condition(&c.points) {
+                        std::mem::swap(&mut c.points, &mut early);
+                    }
+                }
+                stopped
+            })
             .collect();
-        let condition = |c: &Candidate| {
-            let mut each = vec![0.0; problem.hexes.len()];
-            problem.map_hexes(&mut each, |h| {
-                let p = problem.corners_of(h, &c.points);
-                let logs = POSITIONS.iter().map(|at| log_condition(&columns(&p, &weights_at(at.map(f64::from)))));
-                logs.fold(0.0, f64::max)
-            });
-            each.into_iter().fold(0.0, f64::max)
-        };
-        found.sort_by(|a, b| condition(a).total_cmp(&condition(b)).then(a.number.cmp(&b.number)));
+        found.sort_by(|a, b| {
+            self.condition(&a.points).total_cmp(&self.condition(&b.points)).then(a.number.cmp(&b.number))
+        });
         stops.into_iter().flatten().next().unwrap_or(StopReason::Finished)
+    }
+
+    /// The logarithm of the worst condition number.
+    fn condition(&self, points: &[Vector]) -> f64 {
+        let problem = &self.normal.problem;
+        let mut each = vec![0.0; problem.hexes.len()];
+        problem.map_hexes(&mut each, |h| {
+            let p = problem.corners_of(h, points);
+            POSITIONS.iter().map(|at| log_condition(&columns(&p, &weights_at(at.map(f64::from))))).fold(0.0, f64::max)
+        });
+        each.into_iter().fold(0.0, f64::max)
     }
 }

@@ -10,6 +10,7 @@
 //! Boundary vertices keep the bits they were given. Nothing here is a proof: that is for `hexfill-check`.
 //! Surfaces without coordinates get those of the canonical polyhedron ([`canonical_polyhedron`]).
 
+mod canonical;
 mod curvature;
 mod embed;
 mod energy;
@@ -24,11 +25,14 @@ mod problem;
 mod program;
 mod random;
 mod report;
+#[cfg(test)]
+mod samples;
 mod star;
 mod tutte;
 mod untangle;
 mod vector;
 
+pub use canonical::canonical_polyhedron;
 pub use embed::{embed, star_bounds, tutte_start};
 pub use error::EmbedError;
 pub use report::{CellQuality, EmbedReport, Embedding, Objective, Options};
