@@ -1,0 +1,112 @@
+//! Meshes shared by the tests.
+
+#![allow(dead_code, missing_docs)]
+
+use hexfill_io::{Format, MeshData, OtherFace};
+
+/// Two hexes glued along a facet, of different heights and corner numberings, with the ten boundary quads outwards and a
+/// different tag on everything: its mirror image is another mesh.
+pub fn chiral() -> MeshData {
+    let points = vec![
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [1.0, 1.0, 0.25],
+        [0.0, 1.0, 0.0],
+        [0.1, -0.0, 1.0],
+        [1.0, 0.1, 1.5],
+        [1.0, 1.0, 1.75],
+        [0.0, 0.9, 1.0 / 3.0 + 1.0],
+        [3.0, 0.0, -0.5],
+        [2.0, 1.0, 0.1],
+        [2.5, 0.2, 1.1],
+        [2.0, 1.2, 2.1],
+    ];
+    // The second hex starts at a corner of its own and lies on its side.
+    let hexes = vec![[0, 1, 2, 3, 4, 5, 6, 7], [9, 2, 1, 8, 11, 6, 5, 10]];
+    let quads = vec![
+        [0, 4, 7, 3],
+        [0, 1, 5, 4],
+        [3, 7, 6, 2],
+        [0, 3, 2, 1],
+        [4, 5, 6, 7],
+        [1, 8, 10, 5],
+        [2, 6, 11, 9],
+        [9, 8, 1, 2],
+        [5, 10, 11, 6],
+        [8, 9, 11, 10],
+    ];
+    MeshData {
+        points,
+        quads,
+        hexes,
+        point_tags: Some((0..12).map(|i| i % 5 * 7).collect()),
+        quad_tags: Some(vec![4, 1, 1, 2, 2, 1, 3, 3, 12, 4]),
+        hex_tags: Some(vec![21, 22]),
+        ..MeshData::default()
+    }
+}
+
+/// The chiral mesh with data, for the formats that hold it.
+pub fn chiral_for(format: Format) -> MeshData {
+    let mut mesh = chiral();
+    if format.holds_data() {
+        mesh.hex_data = vec![("scaled Jacobian".to_owned(), vec![0.75, -1e-300])];
+        mesh.point_data = vec![("height".to_owned(), (0..12).map(|i| f64::from(i) / 7.0).collect())];
+    }
+    if !format.holds_cells() {
+        mesh = mesh.surface_only();
+    }
+    without_what_is_not_held(mesh, format)
+}
+
+pub fn without_what_is_not_held(mut mesh: MeshData, format: Format) -> MeshData {
+    if !format.holds_point_tags() {
+        mesh.point_tags = None;
+    }
+    if !format.holds_cell_tags() {
+        mesh.quad_tags = None;
+        mesh.hex_tags = None;
+        mesh.other_faces.iter_mut().for_each(|f| f.tag = 0);
+    }
+    if !format.holds_data() {
+        mesh.point_data.clear();
+        mesh.hex_data.clear();
+    }
+    mesh
+}
+
+/// A mesh with every kind of cell and face.
+pub fn mixed() -> MeshData {
+    let mut mesh = chiral();
+    mesh.points.extend([[0.5, 0.5, 3.0], [5.0, 5.0, 5.0], [0.5, 2.0, 0.5]]);
+    mesh.point_tags = None;
+    mesh.tets = vec![[4, 5, 12, 13]];
+    mesh.pyramids = vec![[4, 5, 6, 7, 12]];
+    mesh.wedges = vec![[0, 3, 14, 1, 2, 13]];
+    mesh.other_faces = vec![
+        OtherFace { position: 0, vertices: vec![4, 5, 12], tag: 9 },
+        OtherFace { position: 4, vertices: vec![5, 6, 12], tag: 0 },
+        OtherFace { position: 12, vertices: vec![8, 9, 11, 13, 10], tag: -3 },
+    ];
+    mesh
+}
+
+/// Equality to the bit, notes aside.
+pub fn assert_same(found: &MeshData, due: &MeshData, what: &str) {
+    let bits = |m: &MeshData| -> Vec<[u64; 3]> { m.points.iter().map(|p| p.map(f64::to_bits)).collect() };
+    assert_eq!(bits(found), bits(due), "points of {what}");
+    let data_bits = |data: &[(String, Vec<f64>)]| -> Vec<(String, Vec<u64>)> {
+        let canonical = |x: &f64| if x.is_nan() { f64::NAN.to_bits() } else { x.to_bits() };
+        data.iter().map(|(name, values)| (name.clone(), values.iter().map(canonical).collect())).collect()
+    };
+    assert_eq!(data_bits(&found.hex_data), data_bits(&due.hex_data), "hex data of {what}");
+    assert_eq!(data_bits(&found.point_data), data_bits(&due.point_data), "point data of {what}");
+    let rest = |m: &MeshData| MeshData {
+        points: Vec::new(),
+        hex_data: Vec::new(),
+        point_data: Vec::new(),
+        notes: Vec::new(),
+        ..m.clone()
+    };
+    assert_eq!(rest(found), rest(due), "{what}");
+}

@@ -1,0 +1,191 @@
+//! What is written is read back, to the bit, in every format.
+
+mod common;
+
+use common::{assert_same, chiral_for, mixed, without_what_is_not_held};
+use hexfill_io::{Encoding, Format, MeshData, OtherFace, read_from, read_path, write_path_with, write_to_with};
+use proptest::prelude::*;
+
+fn round_trip(mesh: &MeshData, format: Format, encoding: Encoding) -> MeshData {
+    let mut file = Vec::new();
+    write_to_with(&mut file, format, mesh, encoding).unwrap_or_else(|e| panic!("{format}: {e}"));
+    read_from(file.as_slice(), format, &format!("test.{format}")).unwrap_or_else(|e| {
+        panic!("{e}\n{}", String::from_utf8_lossy(&file[..file.len().min(3000)]));
+    })
+}
+
+fn flavours() -> Vec<(Format, Encoding)> {
+    let text = Format::ALL.map(|f| (f, Encoding::Text));
+    let binary = Format::ALL.into_iter().filter(|f| f.has_binary()).map(|f| (f, Encoding::Binary));
+    text.into_iter().chain(binary).collect()
+}
+
+#[test]
+fn chiral_mesh_with_tags_and_data() {
+    for (format, encoding) in flavours() {
+        let mesh = chiral_for(format);
+        assert_same(&round_trip(&mesh, format, encoding), &mesh, &format!("{format} {encoding:?}"));
+    }
+}
+
+#[test]
+fn all_kinds_of_cells_and_faces() {
+    for (format, encoding) in flavours() {
+        let mut mesh = without_what_is_not_held(mixed(), format);
+        if !format.holds_cells() {
+            mesh = mesh.surface_only();
+        }
+        if format == Format::Json {
+            (mesh.tets, mesh.wedges, mesh.pyramids) = Default::default();
+        }
+        if !format.holds_polygons() {
+            let error = write_to_with(Vec::new(), format, &mesh, encoding).unwrap_err().to_string();
+            assert!(error.contains("5 sides") && error.contains("face 12"), "{error}");
+            mesh.other_faces.pop();
+        }
+        if format == Format::Json {
+            // One list of tags for all faces.
+            assert_eq!(round_trip(&mesh, format, encoding).faces().count(), mesh.face_count());
+        }
+        if format == Format::Medit {
+            // Sections by kind: triangles are written, and read, after the quads.
+            let n = mesh.quads.len();
+            for (i, face) in mesh.other_faces.iter_mut().enumerate() {
+                face.position = n + i;
+            }
+        }
+        if format == Format::Json {
+            mesh.other_faces.iter_mut().for_each(|f| f.tag = 0);
+            mesh.quad_tags = None;
+        }
+        assert_same(&round_trip(&mesh, format, encoding), &mesh, &format!("{format} {encoding:?}"));
+    }
+}
+
+#[test]
+fn compressed_files_in_a_directory() {
+    let directory = std::env::temp_dir().join(format!("hexfill-io-{}", std::process::id()));
+    std::fs::create_dir_all(&directory).unwrap();
+    for (format, encoding) in flavours() {
+        for packing in ["", ".gz", ".zst", ".GZ"] {
+            let path = directory.join(format!("mesh.{}{packing}", format.extensions()[0]));
+            let mesh = chiral_for(format);
+            write_path_with(&path, Some(format), &mesh, encoding).unwrap();
+            let first = std::fs::read(&path).unwrap();
+            let magic: &[u8] = match packing {
+                "" => &[],
+                ".zst" => &[0x28, 0xb5, 0x2f, 0xfd],
+                _ => &[0x1f, 0x8b],
+            };
+            assert!(first.starts_with(magic), "{path:?}");
+            assert_same(&read_path(&path, None).unwrap(), &mesh, &path.display().to_string());
+            // Overwriting gives the same bytes.
+            write_path_with(&path, Some(format), &mesh, encoding).unwrap();
+            assert_eq!(std::fs::read(&path).unwrap(), first);
+        }
+    }
+    // No temporary files are left behind.
+    for entry in std::fs::read_dir(&directory).unwrap() {
+        let name = entry.unwrap().file_name().into_string().unwrap();
+        assert!(name.starts_with("mesh."), "{name}");
+    }
+    std::fs::remove_dir_all(&directory).unwrap();
+}
+
+#[test]
+fn connectivity_without_coordinates() {
+    let mut mesh = chiral_for(Format::Json);
+    mesh.points.clear();
+    mesh.has_coordinates = false;
+    assert_eq!(mesh.vertex_count(), 12);
+    let back = round_trip(&mesh, Format::Json, Encoding::Text);
+    assert_same(&back, &mesh, "json");
+    for format in Format::ALL.into_iter().filter(|&f| f != Format::Json) {
+        let error = write_to_with(Vec::new(), format, &mesh, Encoding::Text).unwrap_err().to_string();
+        assert!(error.contains("coordinates"), "{error}");
+    }
+}
+
+#[test]
+fn empty_meshes_are_written_and_read_or_refused_clearly() {
+    for (format, encoding) in flavours() {
+        let mut file = Vec::new();
+        write_to_with(&mut file, format, &MeshData::default(), encoding).unwrap();
+        match read_from(file.as_slice(), format, "empty") {
+            Ok(mesh) => assert_eq!(mesh.vertex_count() + mesh.face_count() + mesh.cell_count(), 0, "{format}"),
+            Err(e) => assert!(e.to_string().starts_with("empty"), "{e}"),
+        }
+    }
+}
+
+fn coordinate() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        4 => -10.0..10.0f64,
+        2 => any::<u64>().prop_map(f64::from_bits).prop_filter("finite", |x| x.is_finite()),
+        1 => prop::sample::select(vec![
+            0.0, -0.0, 1e300, -1e300, f64::MAX, f64::MIN, f64::MIN_POSITIVE, 5e-324, -5e-324, 2.225_073_858_507_201e-308,
+            0.1, 1.0 / 3.0, 1e15, 1e16, 1e-5, 9.999e-6, 123_456_789.123_456_79, f64::EPSILON,
+        ]),
+    ]
+}
+
+prop_compose! {
+    fn any_mesh()(points in prop::collection::vec(prop::array::uniform3(coordinate()), 8..30))
+        (hexes in prop::collection::vec(prop::sample::subsequence((0..points.len() as u32).collect::<Vec<_>>(), 8).prop_shuffle(), 0..6),
+         quads in prop::collection::vec(prop::sample::subsequence((0..points.len() as u32).collect::<Vec<_>>(), 4).prop_shuffle(), 1..9),
+         triangles in prop::collection::vec((0..9usize, prop::sample::subsequence((0..points.len() as u32).collect::<Vec<_>>(), 3)), 0..4),
+         tags in prop::collection::vec(prop_oneof![-3i64..9, Just(i64::from(i32::MAX)), Just(i64::from(i32::MIN))], 64),
+         values in prop::collection::vec(prop_oneof![coordinate(), Just(f64::NAN)], 64),
+         points in Just(points))
+    -> MeshData {
+        let hexes: Vec<[u32; 8]> = hexes.into_iter().map(|h| h.try_into().unwrap()).collect();
+        let quads: Vec<[u32; 4]> = quads.into_iter().map(|q| q.try_into().unwrap()).collect();
+        let mut positions: Vec<usize> = triangles.iter().map(|t| t.0 % (quads.len() + 1)).collect();
+        positions.sort_unstable();
+        let other_faces = positions.iter().enumerate().zip(&triangles).map(|((i, &p), (_, vertices))| {
+            OtherFace { position: p + i, vertices: vertices.clone(), tag: tags[i] }
+        }).collect();
+        let some = |n: usize, from: usize| Some(tags[from..from + n].to_vec()).filter(|t| t.iter().any(|&x| x != 0));
+        MeshData {
+            point_tags: some(points.len(), 3),
+            quad_tags: some(quads.len(), 33),
+            hex_tags: some(hexes.len(), 50),
+            point_data: vec![("a b%\"<&".to_owned(), values[..points.len()].to_vec())],
+            hex_data: if hexes.is_empty() { vec![] } else { vec![("q".to_owned(), values[40..40 + hexes.len()].to_vec())] },
+            points, quads, other_faces, hexes,
+            ..MeshData::default()
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn any_mesh_in_any_format(mesh in any_mesh()) {
+        for (format, encoding) in flavours() {
+            let mut mesh = without_what_is_not_held(mesh.clone(), format);
+            if !format.holds_cells() {
+                mesh = mesh.surface_only();
+            }
+            if format == Format::Medit {
+                let n = mesh.quads.len();
+                for (i, face) in mesh.other_faces.iter_mut().enumerate() {
+                    face.position = n + i;
+                }
+            }
+            if matches!(format, Format::Msh22 | Format::Msh41) {
+                // Quotation marks end a name in Gmsh.
+                for (name, _) in &mut mesh.point_data {
+                    *name = name.replace('"', "_");
+                }
+            }
+            if format == Format::Ovm {
+                // Random hexes are no cells of a complex; faces may coincide. One hex alone is.
+                mesh.hexes.truncate(1);
+                mesh.hex_tags = mesh.hex_tags.map(|t| t[..1].to_vec()).filter(|t| t[0] != 0);
+            }
+            assert_same(&round_trip(&mesh, format, encoding), &mesh, &format!("{format} {encoding:?}"));
+        }
+    }
+}
