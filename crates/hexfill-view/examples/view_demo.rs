@@ -1,0 +1,45 @@
+//! Writes a few meshes as pages and pictures into a folder: `cargo run -p hexfill-view --example view_demo -- FOLDER`.
+
+#[path = "../tests/common/mod.rs"]
+mod common;
+
+use common::Shape;
+use hexfill_view::{Picture, ViewInput, html, png, png_with};
+use std::path::Path;
+
+fn main() -> std::io::Result<()> {
+    let folder = std::env::args().nth(1).unwrap_or_else(|| "view-demo".into());
+    std::fs::create_dir_all(&folder)?;
+    let mut shapes: Vec<(&str, &str, Shape)> = vec![
+        ("grid", "Grid of 6 x 4 x 3 cubes", common::grid(6, 4, 3)),
+        ("ball", "Ball with a cubic core", common::ball(4, 3)),
+        ("refinement", "Refinement transition, 9 quads to 1", common::refinement()),
+    ];
+    if let Some(k) = std::env::args().nth(2).and_then(|k| k.parse().ok()) {
+        shapes.push(("large", "Large grid", common::grid(k, k, k)));
+    }
+    for (name, title, shape) in &shapes {
+        let quality = common::scaled_jacobian(shape);
+        let order = common::facet_order(&shape.mesh);
+        let facts = [
+            ("made by".to_string(), "view_demo".to_string()),
+            ("inner vertices".to_string(), shape.mesh.n_interior_vertices().to_string()),
+        ];
+        let mut input = ViewInput {
+            title,
+            points: &shape.points,
+            mesh: &shape.mesh,
+            hex_values: Some(("Scaled Jacobian", &quality)),
+            shelling: Some(&order),
+            facts: &facts,
+        };
+        let folder = Path::new(&folder);
+        std::fs::write(folder.join(format!("{name}.html")), html(&input))?;
+        std::fs::write(folder.join(format!("{name}.png")), png(&input, 1200, 640))?;
+        input.hex_values = None;
+        std::fs::write(folder.join(format!("{name}-plain.html")), html(&input))?;
+        let dark = Picture { dark: true, ..Picture::new(600, 560) };
+        std::fs::write(folder.join(format!("{name}-dark.png")), png_with(&input, &dark))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,124 @@
+// Runs inside a page with a mesh (drive.mjs --exercise): asserts what a user sees, through the same events a user makes.
+(async () => {
+  let checks = 0;
+  const $ = (id) => document.getElementById(id);
+  const check = (ok, what) => {
+    checks++;
+    if (!ok) throw new Error(what);
+  };
+  const wait = (ms = 60) => new Promise((done) => setTimeout(done, ms));
+  const key = async (k, more = {}) => {
+    document.activeElement?.blur();
+    document.body.dispatchEvent(new KeyboardEvent("keydown", { key: k, bubbles: true, cancelable: true, ...more }));
+    await wait(20);
+  };
+  const set = async (id, value, event = "input") => {
+    $(id).value = value;
+    $(id).dispatchEvent(new Event(event, { bubbles: true }));
+    await wait(20);
+  };
+  const shown = () => {
+    const m = /^([\d,]+) of/.exec($("status").textContent);
+    return m ? Number(m[1].replace(/,/g, "")) : hexes;
+  };
+  const data = JSON.parse($("data").textContent);
+  const hexes = data.hexes;
+  const find = async (text) => {
+    $("find").value = text;
+    $("find-form").requestSubmit();
+    await wait();
+    return $("picked").textContent;
+  };
+  check(document.body.classList.contains("ready"), "started: " + $("why").textContent);
+  check(getComputedStyle($("fallback")).display === "none", "the still picture is hidden");
+  check($("title").textContent === data.title && document.title === data.title.replace(/\s+/g, " ").trim(), "title");
+
+  // Every hex is there, and a cut, a peel, a limit and the build-up each remove some.
+  check(shown() === hexes, "all shown at first");
+  await set("cut", 0.5);
+  const cut = shown();
+  check(cut > 0 && cut < hexes, `cut shows ${cut}`);
+  await key("x");
+  check(shown() > 0 && shown() < hexes, "flip");
+  await key("0");
+  check(shown() === hexes, "reset");
+  if (Number($("peel").max) > 0) {
+    await key("l");
+    check(shown() < hexes, "peel");
+    await key("L");
+    check(shown() === hexes, "unpeel");
+  }
+  if (data.values) {
+    await set("limit", 0.3);
+    check(shown() > 0 && shown() <= hexes, "limit");
+    await set("limit", 1);
+    check($("histogram").querySelectorAll("rect").length === 30, "histogram");
+  }
+  await key(",");
+  check(shown() === hexes - 1, "one hex back");
+  await key(".");
+  check(shown() === hexes, "one hex further");
+  await key(" ");
+  for (let i = 0; i < 100 && shown() === 0; i++) await wait(100);
+  check(shown() > 0, "playing");
+  await key(" ");
+  await key("0");
+
+  // Sheets cover each hex three times.
+  const lengths = [...$("sheet").options].map((o) => / (\d[\d,]*) quad/.exec(o.text)).filter(Boolean).map((m) => Number(m[1].replace(/,/g, "")));
+  check(lengths.reduce((a, b) => a + b, 0) === 3 * hexes, "sheet quads add up to three a hex");
+  await key("n");
+  check($("sheet").value === "0" && shown() <= lengths[0], "first sheet");
+  await set("sheet-as", "surface", "change");
+  await set("sheet", "all", "change");
+  await set("chord", "all", "change");
+  await set("singular", "all", "change");
+  check($("legends").textContent.includes("valence"), "valence legend");
+  await key("0");
+  for (const k of ["b", "b", "b", "b", "g", "g", "g", "v", "v", "v", "v", "[", "]", "e", "e", "k", "j", "1", "2", "3", "f", "t", "t", "p", "p", "+", "-", "N", "ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"]) await key(k);
+  for (const k of ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"]) await key(k, { shiftKey: true });
+  await key("0");
+
+  // Picking: the middle of the canvas is on the mesh.
+  const canvas = $("canvas");
+  const at = { offsetX: 0, clientX: canvas.clientWidth / 2, clientY: canvas.clientHeight / 2, bubbles: true, button: 0, pointerId: 1 };
+  canvas.dispatchEvent(new PointerEvent("pointermove", { ...at, buttons: 0 }));
+  for (let i = 0; i < 50 && $("tip").hidden; i++) await wait(50);
+  check(!$("tip").hidden && /^h\d+/.test($("tip").textContent), "hover names a hex");
+  canvas.dispatchEvent(new PointerEvent("pointerdown", at));
+  canvas.dispatchEvent(new PointerEvent("pointerup", at));
+  await wait(100);
+  check($("picked").textContent.startsWith($("tip").textContent.match(/^h\d+/)[0]), "click picks what hover named");
+  check($("labels").children.length === 8, "eight corner labels");
+  await key("h");
+  check(shown() === hexes - 1, "hide");
+  await key("H");
+  check(shown() === hexes, "unhide");
+  check((await find(`h${hexes - 1}`)).startsWith(`h${hexes - 1}`), "find a hex");
+  check((await find(`h${hexes}`)).startsWith("There is no"), "find complains");
+  const corner = Number(/Corners v(\d+)/.exec((await find("0")))[1]);
+  check((await find(`v${corner}`)).includes("h0"), "find a vertex");
+  check((await find("nonsense")).startsWith("Write"), "find explains");
+
+  // A link brings everything back.
+  await find("h0");
+  await set("cut", 0.35);
+  await set("shrink", 0.8);
+  for (let i = 0; i < 100 && !location.hash.includes("shrink=0.8"); i++) await wait(50);
+  const link = location.hash;
+  check(link.includes("cam=") && link.includes("cut=0.35") && link.includes("picked=0"), `link ${link}`);
+  const before = [shown(), $("shrink").value];
+  await key("0");
+  await key("Escape");
+  for (let i = 0; i < 100 && location.hash === link; i++) await wait(50);
+  check(location.hash !== link, "the address follows the view");
+  location.hash = link;
+  await wait(300);
+  check(shown() === before[0] && $("shrink").value === before[1], `the link restores the view: ${before}, then ${shown()},${$("shrink").value}`);
+  location.hash = "#cam=1,2&cut=nonsense&sheet=99999&picked=-1&shrink=1e9&hidden=%3Cscript%3E";
+  await wait(300);
+  check(shown() === hexes, "a broken link shows the start");
+  location.hash = link;
+  await wait(400);
+  return `passed ${checks} checks`;
+})();

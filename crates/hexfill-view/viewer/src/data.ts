@@ -1,0 +1,62 @@
+// Reads the data element of the page, as `src/page.rs` wrote it.
+
+export type Rgb = [number, number, number];
+
+export interface Values {
+  name: string;
+  data: Float64Array;
+  low: number;
+  high: number;
+  flagsNonpositive: boolean;
+  ramp: Rgb[];
+}
+
+export interface MeshData {
+  title: string;
+  vertices: number;
+  hexes: number;
+  /** 3 a vertex; NaN where there is no position. */
+  points: Float64Array;
+  /** 8 a hex, VTK order. */
+  corners: Uint32Array;
+  values: Values | null;
+  shelling: Uint32Array | null;
+  facts: [string, string][];
+  problems: string[];
+  colours: { surface: Rgb; inside: Rgb; unknown: Rgb; flagged: Rgb; quality: Rgb[]; growth: Rgb[] };
+}
+
+export function readData(): MeshData {
+  const raw = JSON.parse(document.getElementById("data")!.textContent!);
+  if (raw.format !== "hexfill-view 1") throw new Error(`unknown data format ${raw.format}`);
+  const corners = bytes(raw.corners);
+  const wide =
+    raw.corner_bytes === 1 ? corners : raw.corner_bytes === 2 ? new Uint16Array(corners.buffer) : new Uint32Array(corners.buffer);
+  return {
+    title: raw.title,
+    vertices: raw.vertices,
+    hexes: raw.hexes,
+    points: new Float64Array(bytes(raw.points).buffer),
+    corners: Uint32Array.from(wide),
+    values: raw.values && {
+      name: raw.values.name,
+      data: new Float64Array(bytes(raw.values.data).buffer),
+      low: raw.values.low,
+      high: raw.values.high,
+      flagsNonpositive: raw.values.flags_nonpositive,
+      ramp: raw.values.ramp,
+    },
+    shelling: raw.shelling === null ? null : new Uint32Array(bytes(raw.shelling).buffer),
+    facts: raw.facts,
+    problems: raw.problems,
+    colours: raw.colours,
+  };
+}
+
+/** Typed arrays read the byte order of the machine, which is little-endian wherever browsers run. */
+function bytes(base64: string): Uint8Array<ArrayBuffer> {
+  const text = atob(base64);
+  const out = new Uint8Array(text.length);
+  for (let i = 0; i < text.length; i++) out[i] = text.charCodeAt(i);
+  return out;
+}
