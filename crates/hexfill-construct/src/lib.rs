@@ -1,1 +1,30 @@
-//! A hex mesh for any quad surface that can have one
+//! A hex mesh for any quad surface that can have one.
+//!
+//! One file per step: [`colouring`](crate::colouring()), matching, buffer layer, tetrahedra, Sigma, splitting,
+//! assembly. [`construct`] runs them all. The surface stays exactly as it is.
+//! Sources: J. Erickson, "Efficiently hex-meshing things with topology" (2014); D. Eppstein (1999);
+//! K. Verhetsel, J. Pellerin, J.-F. Remacle (2019). The book's page `construction` tells the whole story.
+
+mod assemble;
+mod ball;
+mod cell;
+mod colouring;
+mod construct;
+mod error;
+mod layer;
+mod matching;
+mod pattern;
+mod report;
+mod sigma;
+mod split;
+mod tets;
+
+pub use ball::{BallCore, BallTets};
+pub use cell::{Cell, CellLibrary, PlacedCell};
+pub use colouring::{Colouring, all_black, colouring};
+pub use construct::{Construction, Options, RouteChoice, construct};
+pub use error::ConstructError;
+pub use matching::{LightSides, light_sides};
+pub use pattern::{Pattern, Role, SYMMETRIES, Side, Symmetry};
+pub use report::{Report, Route};
+pub use tets::{InteriorTets, TET_EDGES, TetComplex, TetRequest, tet_edge};

@@ -1,0 +1,194 @@
+//! The construction from end to end.
+
+use crate::assemble::{count_cells, place_cells};
+use crate::ball::{BallCore, BallTets};
+use crate::cell::CellLibrary;
+use crate::colouring::{all_black, colouring};
+use crate::error::ConstructError;
+use crate::layer::Layer;
+use crate::matching::light_sides;
+use crate::report::{Report, Route};
+use crate::sigma::sigma;
+use crate::split::{core_points, split_tets};
+use crate::tets::{InteriorTets, TetComplex, TetRequest, others, tet_edge};
+use hexfill_mesh::{Context, HexMesh, QuadId, QuadSurface, improper_pairs};
+
+/// Which colouring to use.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum RouteChoice {
+    /// The bipartition if there is one, else few black-black edges.
+    #[default]
+    Auto,
+    /// Black all over: Erickson's construction, for comparison.
+    Erickson,
+}
+
+/// Choices for [`construct`].
+#[derive(Default)]
+pub struct Options {
+    /// Which colouring.
+    pub route: RouteChoice,
+    /// How the core of a ball is made.
+    pub ball_core: BallCore,
+    /// Who makes the tetrahedra of the interior; without it a ball is coned, and anything else is cut along disks
+    /// that positions tell (see [`crate::HandlebodyTets`]).
+    pub tets: Option<Box<dyn InteriorTets>>,
+    /// Cells to use instead of the built-in ones.
+    pub library: Option<CellLibrary>,
+}
+
+impl std::fmt::Debug for Options {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Options")
+            .field("route", &self.route)
+            .field("ball_core", &self.ball_core)
+            .field("tets", &self.tets.as_ref().map(|t| t.name()))
+            .finish_non_exhaustive()
+    }
+}
+
+/// A hex mesh whose boundary is the surface.
+#[derive(Clone, Debug)]
+pub struct Construction {
+    /// The mesh. The surface's vertices keep their ids; inner vertices follow.
+    pub mesh: HexMesh,
+    /// What it was made of.
+    pub report: Report,
+    /// Start positions for every vertex, if the surface has positions: those of the surface bit for bit.
+    pub start: Option<Vec<[f64; 3]>>,
+}
+
+/// Fills `surface` with hexes; `points` are the positions of its vertices, if any.
+///
+/// Linear time and memory (the tetrahedra's edges and faces are sorted). The same bytes for the same input.
+///
+/// # Errors
+/// [`ConstructError`]: no hex mesh exists (with the certificate), the interior is not known, or the work was stopped.
+pub fn construct(
+    surface: &QuadSurface,
+    points: Option<&[[f64; 3]]>,
+    options: &Options,
+    ctx: &Context<'_>,
+) -> Result<Construction, ConstructError> {
+    if !surface.n_quads().is_multiple_of(2) {
+        return Err(ConstructError::OddQuads { given: surface.n_quads() });
+    }
+    let pairs = improper_pairs(surface);
+    if !pairs.is_empty() {
+        return Err(ConstructError::ImproperQuads { pairs });
+    }
+    let stage = |name: &'static str| match ctx.stop() {
+        Some(reason) => Err(ConstructError::Stopped(reason)),
+        None => {
+            ctx.report(name, 0, None, String::new);
+            Ok(())
+        }
+    };
+    stage("colouring")?;
+    let colours = match options.route {
+        RouteChoice::Auto => colouring(surface),
+        RouteChoice::Erickson => all_black(surface),
+    };
+    let library = match &options.library {
+        Some(library) => library,
+        None => CellLibrary::built_in(),
+    };
+    stage("matching")?;
+    let sides = light_sides(surface, ctx)?;
+    stage("buffer layer")?;
+    let layer = Layer::new(surface, &colours, &sides, library)?;
+    stage("tetrahedra")?;
+    let triangles = layer.triangles();
+    let request = TetRequest { n_vertices: surface.n_vertices(), triangles: &triangles, points };
+    let ball = BallTets { surface, colouring: &colours, core: options.ball_core };
+    let maker: &dyn InteriorTets = match &options.tets {
+        Some(maker) => maker.as_ref(),
+        None if surface.is_sphere() => &ball,
+        None => {
+            return Err(ConstructError::InteriorNeeded {
+                genus: surface.genus(),
+                components: surface.n_components(),
+                reason: "give tetrahedra".into(),
+            });
+        }
+    };
+    let complex = maker.fill(&request, ctx)?;
+    let boundary = complex.match_boundary(&request)?;
+    stage("sigma")?;
+    let cut = sigma(surface, &colours, &complex, &surface_edges(surface, &layer, &complex, &boundary))?;
+    stage("cells")?;
+    let n_quads = surface.n_quads();
+    let (cells, n_inner) = count_cells(&layer, library, n_quads)?;
+    let n_cell_hexes = cells.values().map(|(count, hexes)| count * hexes).sum();
+    let mut n_split = [0usize; 3];
+    for edges in &complex.tet_edges {
+        n_split[match edges.iter().filter(|&&e| cut[e as usize]).count() {
+            0 => 0,
+            3 => 1,
+            _ => 2,
+        }] += 1;
+    }
+    let report = Report {
+        route: match (options.route, colours.n_cut_edges) {
+            (RouteChoice::Erickson, _) => Route::Erickson,
+            (RouteChoice::Auto, 0) => Route::Bipartite,
+            (RouteChoice::Auto, _) => Route::Mixed,
+        },
+        n_quads,
+        n_white: colours.white.iter().filter(|&&w| w).count(),
+        n_cut_edges: colours.n_cut_edges,
+        n_unmatched: sides.n_unmatched,
+        cells,
+        n_cell_hexes,
+        tets_by: maker.name(),
+        n_tets: complex.tets.len(),
+        n_split,
+        n_core_hexes: 4 * n_split[0] + 7 * n_split[1] + 8 * n_split[2],
+    };
+    if report.n_hexes() > HexMesh::MAX_HEXES {
+        return Err(ConstructError::TooLarge { what: "hexes", given: report.n_hexes(), limit: HexMesh::MAX_HEXES });
+    }
+    let mut hexes = Vec::with_capacity(report.n_hexes());
+    place_cells(&layer, library, n_quads, layer.n_points(), &mut hexes, ctx)?;
+    stage("core")?;
+    let first = layer.n_points() as usize + n_inner;
+    let first = u32::try_from(first).map_err(|_| ConstructError::TooLarge {
+        what: "vertices",
+        given: first,
+        limit: u32::MAX as usize,
+    })?;
+    let core = core_points(&complex, &cut, &boundary, &layer, surface.n_vertices(), first)?;
+    split_tets(&complex, &cut, &core, &mut hexes);
+    debug_assert_eq!(hexes.len(), report.n_hexes());
+    stage("mesh")?;
+    let n_vertices = core.end as usize;
+    drop((complex, cut, triangles));
+    let mesh = HexMesh::try_new(n_vertices, &hexes)?;
+    Ok(Construction { mesh, report, start: None })
+}
+
+/// Per dart: the edge of the complex under it.
+fn surface_edges(surface: &QuadSurface, layer: &Layer<'_>, complex: &TetComplex, boundary: &[u32]) -> Vec<u32> {
+    let mut triangle_of = vec![u32::MAX; complex.n_faces];
+    for (t, &f) in boundary.iter().enumerate() {
+        triangle_of[f as usize] = t as u32;
+    }
+    let mut edges = vec![0; 4 * surface.n_quads()];
+    for (t, tet) in complex.tets.iter().enumerate() {
+        for i in 0..4 {
+            let triangle = triangle_of[complex.tet_faces[t][i] as usize];
+            if triangle == u32::MAX {
+                continue;
+            }
+            let (q, half) = (QuadId(triangle / 2), (triangle % 2) as u8);
+            for side in [2 * half, 2 * half + 1] {
+                let d = layer.dart(q, side);
+                let local = |v: u32| others(i).into_iter().find(|&j| tet[j] == v);
+                if let (Some(a), Some(b)) = (local(surface.origin(d).0), local(surface.target(d).0)) {
+                    edges[d.index()] = complex.tet_edges[t][tet_edge(a, b)];
+                }
+            }
+        }
+    }
+    edges
+}

@@ -1,0 +1,232 @@
+//! Step 2: which sides are heavy. Every quad needs an odd number of heavy sides, best three.
+//!
+//! The *light* sides form a set with an odd number at every quad as well: a perfect matching of the dual graph
+//! (one light side each) where possible. The dual graph is 4-regular and, for a sphere, 4-edge-connected, so a
+//! perfect matching exists (Tutte); here a greedy matching (smallest residual degree first, Karp and Sipser 1981)
+//! is improved by short augmenting paths, and the few quads that are left are paired along a spanning tree: such a
+//! path adds 0 or 2 to the light sides of the quads it passes (a T-join). All steps take linear time, because the
+//! search for one augmenting path visits a bounded number of quads.
+
+use crate::error::ConstructError;
+use hexfill_mesh::{Context, Dart, QuadId, QuadSurface};
+
+/// The light sides, an odd number at each quad.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LightSides {
+    /// Per dart: whether its edge is light (equal for twins).
+    pub light: Vec<bool>,
+    /// Number of quads the matching left over, paired by tree paths.
+    pub n_unmatched: usize,
+    /// Number of quads with three light sides.
+    pub n_triple: usize,
+}
+
+/// Quads visited in the search for one augmenting path.
+const SEARCH_LIMIT: usize = 4000;
+
+const FREE: Dart = Dart(u32::MAX);
+
+/// Chooses the light sides. Linear time.
+///
+/// # Errors
+/// [`ConstructError::OddComponent`] if a component has an odd number of quads; [`ConstructError::Stopped`].
+pub fn light_sides(surface: &QuadSurface, ctx: &Context<'_>) -> Result<LightSides, ConstructError> {
+    let mut size = vec![0usize; surface.n_components()];
+    for q in 0..surface.n_quads() {
+        size[surface.component(QuadId::new(q))] += 1;
+    }
+    if let Some(component) = size.iter().position(|s| s % 2 == 1) {
+        return Err(ConstructError::OddComponent { component, given: size[component] });
+    }
+    let mut mate = greedy(surface);
+    augment(surface, &mut mate, ctx)?;
+    let mut light = vec![false; 4 * surface.n_quads()];
+    for &d in mate.iter().filter(|&&d| d != FREE) {
+        light[d.index()] = true;
+    }
+    let mut odd: Vec<bool> = mate.iter().map(|&d| d == FREE).collect();
+    let n_unmatched = odd.iter().filter(|&&o| o).count();
+    if n_unmatched > 0 {
+        tree_join(surface, &mut odd, &mut light);
+    }
+    let n_triple = light.chunks(4).filter(|l| l.iter().filter(|&&x| x).count() == 3).count();
+    Ok(LightSides { light, n_unmatched, n_triple })
+}
+
+/// Per quad: its dart across which it is matched, or [`FREE`].
+fn greedy(surface: &QuadSurface) -> Vec<Dart> {
+    let n = surface.n_quads();
+    let mut mate = vec![FREE; n];
+    let mut residual = vec![4u8; n];
+    let mut ready: Vec<u32> = Vec::new();
+    let mut next = 0usize;
+    loop {
+        let q = match ready.pop() {
+            Some(q) => q as usize,
+            None if next < n => {
+                next += 1;
+                next - 1
+            }
+            None => return mate,
+        };
+        if mate[q] != FREE {
+            continue;
+        }
+        let free = (0..4).map(|k| Dart::new(QuadId::new(q), k)).filter(|&d| {
+            let other = surface.twin(d).quad().index();
+            other != q && mate[other] == FREE
+        });
+        let Some(d) = free.min_by_key(|&d| residual[surface.twin(d).quad().index()]) else { continue };
+        let other = surface.twin(d).quad().index();
+        mate[q] = d;
+        mate[other] = surface.twin(d);
+        for gone in [q, other] {
+            for k in 0..4 {
+                let r = surface.twin(Dart::new(QuadId::new(gone), k)).quad().index();
+                residual[r] = residual[r].saturating_sub(1);
+                if mate[r] == FREE && residual[r] == 1 {
+                    ready.push(r as u32);
+                }
+            }
+        }
+    }
+}
+
+/// Alternating breadth-first search from each free quad. Every quad is entered once, so a path found is simple;
+/// odd cycles may hide a path, which costs optimality and never correctness.
+fn augment(surface: &QuadSurface, mate: &mut [Dart], ctx: &Context<'_>) -> Result<(), ConstructError> {
+    let n = mate.len();
+    let mut stamp = vec![u32::MAX; n];
+    // Per quad reached by an unmatched edge: the dart (of the even quad before it) that reached it.
+    let mut from = vec![FREE; n];
+    let mut queue: Vec<usize> = Vec::new();
+    for root in 0..n {
+        if mate[root] != FREE {
+            continue;
+        }
+        if let Some(reason) = ctx.stop() {
+            return Err(ConstructError::Stopped(reason));
+        }
+        queue.clear();
+        queue.push(root);
+        stamp[root] = root as u32;
+        let mut at = 0;
+        let mut end = None;
+        'search: while at < queue.len() && queue.len() < SEARCH_LIMIT {
+            let q = queue[at];
+            at += 1;
+            for k in 0..4 {
+                let d = Dart::new(QuadId::new(q), k);
+                let other = surface.twin(d).quad().index();
+                if stamp[other] == root as u32 {
+                    continue;
+                }
+                stamp[other] = root as u32;
+                from[other] = d;
+                if mate[other] == FREE {
+                    end = Some(other);
+                    break 'search;
+                }
+                let even = surface.twin(mate[other]).quad().index();
+                stamp[even] = root as u32;
+                queue.push(even);
+            }
+        }
+        while let Some(odd) = end {
+            let d = from[odd];
+            let even = d.quad().index();
+            let before = mate[even];
+            mate[even] = d;
+            mate[odd] = surface.twin(d);
+            end = (even != root).then(|| surface.twin(before).quad().index());
+        }
+    }
+    Ok(())
+}
+
+/// Toggles the tree edges below which an odd number of marked quads lies.
+fn tree_join(surface: &QuadSurface, odd: &mut [bool], light: &mut [bool]) {
+    let n = odd.len();
+    let mut seen = vec![false; n];
+    let mut order: Vec<(usize, Dart)> = Vec::with_capacity(n);
+    for root in 0..n {
+        if seen[root] {
+            continue;
+        }
+        seen[root] = true;
+        let mut at = order.len();
+        order.push((root, FREE));
+        while at < order.len() {
+            let (q, _) = order[at];
+            at += 1;
+            for k in 0..4 {
+                let d = Dart::new(QuadId::new(q), k);
+                let other = surface.twin(d).quad().index();
+                if !seen[other] {
+                    seen[other] = true;
+                    order.push((other, surface.twin(d)));
+                }
+            }
+        }
+    }
+    for &(q, up) in order.iter().rev() {
+        if odd[q] && up != FREE {
+            let across = surface.twin(up);
+            light[up.index()] ^= true;
+            light[across.index()] ^= true;
+            odd[q] = false;
+            odd[across.quad().index()] ^= true;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hexfill_mesh::generate::{random_sphere, torus};
+
+    fn check(surface: &QuadSurface) -> LightSides {
+        let l = light_sides(surface, &Context::default()).unwrap();
+        for d in surface.darts() {
+            assert_eq!(l.light[d.index()], l.light[surface.twin(d).index()]);
+        }
+        assert!(l.light.chunks(4).all(|c| c.iter().filter(|&&x| x).count() % 2 == 1));
+        l
+    }
+
+    #[test]
+    fn every_quad_has_an_odd_number_of_light_sides() {
+        let (mut quads, mut left) = (0, 0);
+        for i in 0..60 {
+            let s = random_sphere(20 + 4 * i, i as u64).unwrap();
+            left += check(&s).n_unmatched;
+            quads += s.n_quads();
+        }
+        assert!(100 * left <= quads, "{left} of {quads} quads unmatched");
+        for (m, n) in [(4, 4), (3, 4), (5, 6), (20, 31)] {
+            check(&torus(m, n, 0).unwrap());
+        }
+    }
+
+    #[test]
+    fn the_tree_pairs_any_even_set() {
+        let s = torus(6, 5, 0).unwrap();
+        let mut odd = vec![false; 30];
+        odd[3] = true;
+        odd[29] = true;
+        let wanted = odd.clone();
+        let mut light = vec![false; 120];
+        tree_join(&s, &mut odd, &mut light);
+        for q in 0..30 {
+            assert_eq!(light[4 * q..4 * q + 4].iter().filter(|&&x| x).count() % 2 == 1, wanted[q]);
+        }
+    }
+
+    #[test]
+    fn an_odd_component_is_refused() {
+        assert!(matches!(
+            light_sides(&torus(3, 5, 0).unwrap(), &Context::default()),
+            Err(ConstructError::OddComponent { component: 0, given: 15 })
+        ));
+    }
+}

@@ -1,0 +1,92 @@
+//! What a construction was made of.
+
+use crate::pattern::Pattern;
+use std::collections::BTreeMap;
+use std::fmt;
+
+/// How the surface was coloured.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Route {
+    /// Two colours on every edge; Sigma is empty and every tet is split in 4.
+    Bipartite,
+    /// Few black-black edges; Sigma is spanned by them.
+    Mixed,
+    /// Black all over: Erickson's construction with 10-quad inner facets.
+    Erickson,
+}
+
+impl fmt::Display for Route {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Bipartite => "bipartite",
+            Self::Mixed => "mixed",
+            Self::Erickson => "erickson",
+        })
+    }
+}
+
+/// The construction in numbers. Counts only: the same for the same input, always.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Report {
+    /// How the surface was coloured.
+    pub route: Route,
+    /// Quads of the surface.
+    pub n_quads: usize,
+    /// White vertices.
+    pub n_white: usize,
+    /// Black-black edges (cut by Sigma).
+    pub n_cut_edges: usize,
+    /// Quads the matching left over, paired by a T-join.
+    pub n_unmatched: usize,
+    /// Buffer cells by pattern: how many, and hexes in one.
+    pub cells: BTreeMap<Pattern, (usize, usize)>,
+    /// Hexes of the buffer layer.
+    pub n_cell_hexes: usize,
+    /// Who made the tetrahedra.
+    pub tets_by: &'static str,
+    /// Tetrahedra of the core.
+    pub n_tets: usize,
+    /// Tetrahedra split into 4, 7 and 8 hexes.
+    pub n_split: [usize; 3],
+    /// Hexes of the core.
+    pub n_core_hexes: usize,
+}
+
+impl Report {
+    /// Number of hexes.
+    pub fn n_hexes(&self) -> usize {
+        self.n_cell_hexes + self.n_core_hexes
+    }
+
+    /// Hexes per quad of the surface.
+    pub fn hexes_per_quad(&self) -> f64 {
+        self.n_hexes() as f64 / self.n_quads as f64
+    }
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "{} hexes for {} quads ({:.2} per quad), route {}",
+            self.n_hexes(),
+            self.n_quads,
+            self.hexes_per_quad(),
+            self.route
+        )?;
+        writeln!(
+            f,
+            "white vertices {}, cut edges {}, unmatched quads {}",
+            self.n_white, self.n_cut_edges, self.n_unmatched
+        )?;
+        for (pattern, (count, hexes)) in &self.cells {
+            writeln!(f, "cell {pattern}: {count} x {hexes} hexes")?;
+        }
+        let [four, seven, eight] = self.n_split;
+        write!(
+            f,
+            "core ({}): {} tetrahedra, split in 4/7/8: {four}/{seven}/{eight}, {} hexes",
+            self.tets_by, self.n_tets, self.n_core_hexes
+        )
+    }
+}
