@@ -10,8 +10,8 @@
 //! and one flag an orbit is tried: a group of order g is found with log2 g full codes.
 
 use crate::ids::{Dart, VertexId};
+use crate::orbits::{Orbits, keep_rarest, mix};
 use crate::surface::QuadSurface;
-use rustc_hash::FxHashMap;
 use std::cmp::Ordering;
 
 const UNLABELLED: u32 = u32::MAX;
@@ -172,12 +172,6 @@ impl<'a> Walker<'a> {
     }
 }
 
-/// One step of a hash with a fixed specification (it decides which flags are tried, so it is part of the signature's version).
-fn mix(hash: u64, number: u32) -> u64 {
-    let x = (hash ^ u64::from(number)).wrapping_add(0x9E37_79B9_7F4A_7C15).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    x ^ (x >> 29)
-}
-
 /// The canonical form of one component.
 pub(crate) struct Canonical {
     /// The smallest code over the flags tried.
@@ -195,31 +189,46 @@ pub(crate) enum Handedness {
     Only { mirrored: bool },
 }
 
-/// The canonical form of the component that holds the quads `quads` (all of them).
-pub(crate) fn canonical(surface: &QuadSurface, quads: &[u32], handedness: Handedness) -> Canonical {
-    let mut walker = Walker::new(surface);
-    let candidates = candidates(&mut walker, quads, handedness);
-    let mut orbits = Orbits::default();
-    let mut flag = candidates[0];
-    let mut best = walker.code(flag);
-    // The walk of the best flag, kept to read automorphisms off.
-    let mut best_entered = walker.entered.clone();
-    for &other in &candidates[1..] {
-        if orbits.is_done(other) || orbits.same(other, flag) {
-            continue;
-        }
-        match walker.improve(other, &mut best) {
-            Ordering::Greater => orbits.finish(other),
-            Ordering::Less => {
-                orbits.finish(flag);
-                flag = other;
-                best_entered.clone_from(&walker.entered);
-            }
-            Ordering::Equal => orbits.merge_by(flag, &best_entered, other, &walker.entered, &candidates),
-        }
+/// Computes canonical forms of the components of one surface; keeps its tables from one to the next.
+pub(crate) struct Canonizer<'a> {
+    walker: Walker<'a>,
+    orbits: Orbits,
+    place: Vec<u32>,
+}
+
+impl<'a> Canonizer<'a> {
+    pub fn new(surface: &'a QuadSurface) -> Self {
+        Self { walker: Walker::new(surface), orbits: Orbits::default(), place: vec![0; surface.n_quads()] }
     }
-    let flags = candidates.iter().copied().filter(|&f| f == flag || orbits.same(f, flag)).collect();
-    Canonical { code: best, flag, flags }
+
+    /// The canonical form of the component that holds the quads `quads` (all of them).
+    pub fn canonical(&mut self, quads: &[u32], handedness: Handedness) -> Canonical {
+        let Self { walker, orbits, place } = self;
+        let candidates = candidates(walker, quads, handedness);
+        orbits.reset(8 * walker.surface.n_quads(), candidates.iter().map(|f| f.index()));
+        let mut flag = candidates[0];
+        let mut best = walker.code(flag);
+        // The walk of the best flag, kept to read automorphisms off.
+        let mut best_entered = walker.entered.clone();
+        for &other in &candidates[1..] {
+            if orbits.is_done(other.index()) || orbits.same(other.index(), flag.index()) {
+                continue;
+            }
+            match walker.improve(other, &mut best) {
+                Ordering::Greater => orbits.finish(other.index()),
+                Ordering::Less => {
+                    orbits.finish(flag.index());
+                    flag = other;
+                    best_entered.clone_from(&walker.entered);
+                }
+                Ordering::Equal => {
+                    merge_by(orbits, place, (flag, &best_entered), (other, &walker.entered), &candidates)
+                }
+            }
+        }
+        let flags = candidates.into_iter().filter(|f| orbits.same(f.index(), flag.index())).collect();
+        Canonical { code: best, flag, flags }
+    }
 }
 
 /// The flags of the rarest kind. Every test here is an invariant, so isomorphic components choose corresponding flags.
@@ -248,90 +257,26 @@ fn candidates(walker: &mut Walker<'_>, quads: &[u32], handedness: Handedness) ->
     flags
 }
 
-/// Keeps the flags whose kind has the fewest flags, of equally rare kinds the smallest.
-fn keep_rarest(flags: &mut Vec<Flag>, mut kind: impl FnMut(Flag) -> u64) {
-    let kinds: Vec<u64> = flags.iter().map(|&f| kind(f)).collect();
-    let rarest = if kinds.len() < 512 {
-        let mut sorted = kinds.clone();
-        sorted.sort_unstable();
-        sorted.chunk_by(|a, b| a == b).map(|run| (run.len(), run[0])).min()
-    } else {
-        let mut counts: FxHashMap<u64, usize> = FxHashMap::default();
-        for &k in &kinds {
-            *counts.entry(k).or_default() += 1;
-        }
-        counts.into_iter().map(|(k, n)| (n, k)).min()
-    };
-    let mut at = 0;
-    flags.retain(|_| {
-        at += 1;
-        rarest.is_some_and(|(_, k)| kinds[at - 1] == k)
-    });
-}
-
-/// Orbits of flags under the automorphisms found so far (union-find), and which orbits need no further test.
-/// Flags without an entry are orbits of one.
-#[derive(Default)]
-struct Orbits {
-    parent: FxHashMap<usize, usize>,
-    done: FxHashMap<usize, ()>,
-}
-
-impl Orbits {
-    fn root(&mut self, flag: Flag) -> usize {
-        let mut i = flag.index();
-        while let Some(&p) = self.parent.get(&i) {
-            if p == i {
-                break;
-            }
-            let grand = self.parent.get(&p).copied().unwrap_or(p);
-            self.parent.insert(i, grand);
-            i = p;
-        }
-        i
+/// Merges the orbits by the automorphism that takes one flag to another, each given with the darts by which its walk entered the quads.
+/// `place` is scratch, one number a quad.
+fn merge_by(
+    orbits: &mut Orbits,
+    place: &mut [u32],
+    (a, from): (Flag, &[Dart]),
+    (b, to): (Flag, &[Dart]),
+    candidates: &[Flag],
+) {
+    for (i, d) in from.iter().enumerate() {
+        place[d.quad().index()] = i as u32;
     }
-
-    fn same(&mut self, a: Flag, b: Flag) -> bool {
-        self.root(a) == self.root(b)
-    }
-
-    fn is_done(&mut self, flag: Flag) -> bool {
-        let root = self.root(flag);
-        self.done.contains_key(&root)
-    }
-
-    fn finish(&mut self, flag: Flag) {
-        let root = self.root(flag);
-        self.done.insert(root, ());
-    }
-
-    fn union(&mut self, a: Flag, b: Flag) {
-        let (a, b) = (self.root(a), self.root(b));
-        if a != b {
-            let (low, high) = (a.min(b), a.max(b));
-            self.parent.insert(high, low);
-            if self.done.remove(&high).is_some() {
-                self.done.insert(low, ());
-            }
-        }
-    }
-
-    /// Merges by the automorphism that takes the flag `a` to the flag `b`, whose walks entered the quads by `from` and `to`.
-    fn merge_by(&mut self, a: Flag, from: &[Dart], b: Flag, to: &[Dart], candidates: &[Flag]) {
-        let mut place: FxHashMap<u32, usize> = FxHashMap::default();
-        for (i, d) in from.iter().enumerate() {
-            place.insert(d.quad().0, i);
-        }
-        for &flag in candidates {
-            // `flag` is so many sides after the entry of its quad, in the sense of `a`; its image so many after the entry of the image quad, in that of `b`.
-            let i = place[&flag.dart.quad().0];
-            let entry = from[i];
-            let ahead = (flag.dart.0 + 4 - entry.0 % 4) % 4;
-            let steps = if a.mirrored { (4 - ahead) % 4 } else { ahead };
-            let start = Flag { dart: to[i], mirrored: b.mirrored };
-            let image = Flag { dart: start.rotated(steps).dart, mirrored: flag.mirrored ^ a.mirrored ^ b.mirrored };
-            self.union(flag, image);
-        }
+    for &flag in candidates {
+        // `flag` is so many sides after the entry of its quad, in the sense of `a`; its image so many after the entry of the image quad, in that of `b`.
+        let i = place[flag.dart.quad().index()] as usize;
+        let ahead = (flag.dart.0 + 4 - from[i].0 % 4) % 4;
+        let steps = if a.mirrored { (4 - ahead) % 4 } else { ahead };
+        let start = Flag { dart: to[i], mirrored: b.mirrored };
+        let image = Flag { dart: start.rotated(steps).dart, mirrored: flag.mirrored ^ a.mirrored ^ b.mirrored };
+        orbits.union(flag.index(), image.index());
     }
 }
 
@@ -364,7 +309,7 @@ mod tests {
         surfaces.extend([torus(4, 4, 0).unwrap(), torus(3, 5, 1).unwrap(), torus(5, 5, 2).unwrap()]);
         for s in surfaces {
             let quads: Vec<u32> = (0..s.n_quads() as u32).collect();
-            let c = canonical(&s, &quads, Handedness::Both);
+            let c = Canonizer::new(&s).canonical(&quads, Handedness::Both);
             let mut walker = Walker::new(&s);
             let equal: Vec<Flag> =
                 (0..8 * s.n_quads()).map(Flag::from_index).filter(|&f| walker.code(f) == c.code).collect();

@@ -7,7 +7,7 @@
 use crate::ids::VertexId;
 use crate::signature_text::{SEPARATOR, SignatureError, components, push_number};
 use crate::surface::{QuadSurface, SurfaceError};
-use crate::surface_code::{Canonical, Flag, Handedness, Walker, canonical};
+use crate::surface_code::{Canonical, Canonizer, Flag, Handedness, Walker};
 use rustc_hash::FxHashSet;
 
 const PREFIX: &str = "Q1:";
@@ -38,8 +38,9 @@ struct Form {
 impl Form {
     /// The form over the given flags; for several components the handedness must be one for all of them.
     fn of(surface: &QuadSurface, handedness: Handedness) -> Self {
+        let mut canonizer = Canonizer::new(surface);
         let mut parts: Vec<Canonical> =
-            quads_by_component(surface).iter().map(|quads| canonical(surface, quads, handedness)).collect();
+            quads_by_component(surface).iter().map(|quads| canonizer.canonical(quads, handedness)).collect();
         parts.sort_by(|a, b| a.code.len().cmp(&b.code.len()).then_with(|| a.code.cmp(&b.code)));
         Self { parts }
     }

@@ -1,7 +1,7 @@
 //! 3-connected quad spheres: all of a size, and random ones.
 //!
-//! Theorem (Brinkmann, Greenberg, Greenhill, McKay, Thomas, Wollan, "Generation of simple quadrangulations of the sphere", 2005,
-//! theorem 4): every one arises from a pseudo-double wheel by the expansions P1 (split off a vertex of degree 3: one quad more)
+//! Theorem (Brinkmann, Greenberg, Greenhill, McKay, Thomas, Wollan, "Generation of simple quadrangulations of the sphere",
+//! 2005): every one arises from a pseudo-double wheel by the expansions P1 (split off a vertex of degree 3: one quad more)
 //! and P3 (a ring of four quads inside a quad: four quads more), staying 3-connected all the way. Their counts for 6, 8, ..., 20 quads are
 //! 1, 1, 3, 11, 58, 451, 4461, 49957. A surface stays 3-connected as long as no vertex pair is twice an edge or diagonal
 //! (see [`crate::improper_pairs`]) and no degree falls below 3, so each move is judged by a look at a table of pairs.
@@ -241,12 +241,17 @@ impl Sphere {
     /// Two quads at an edge form a hexagon; the edge becomes its next long diagonal (either way round), where that stays 3-connected.
     fn slide_somewhere(&mut self, random: &mut Random) -> bool {
         let (a, d) = self.random_edge(random);
+        self.slide(a, d, random.below(2) == 0)
+    }
+
+    /// The slide of the edge `ad`, if it may be made.
+    fn slide(&mut self, a: u32, d: u32, clockwise: bool) -> bool {
         if self.degree[a as usize] < 4 || self.degree[d as usize] < 4 {
             return false;
         }
         let (p, [_, _, e, f]) = self.quad_from(a, d);
         let (q, [_, _, b, c]) = self.quad_from(d, a);
-        let (new_pairs, quads) = if random.below(2) == 0 {
+        let (new_pairs, quads) = if clockwise {
             ([(b, e), (b, f), (c, e)], [[a, b, e, f], [b, c, d, e]])
         } else {
             ([(c, f), (c, e), (b, f)], [[c, d, e, f], [a, b, c, f]])
@@ -292,5 +297,34 @@ mod tests {
         let classes: std::collections::BTreeSet<String> =
             (0..3000).map(|seed| surface_signature(&random_sphere(14, seed).unwrap())).collect();
         assert_eq!(classes.len(), 58);
+    }
+
+    /// Slides can be undone, so between any two classes A, B of one size: (slides A to B) / |Aut A| = (slides B to A) / |Aut B|. This ties the
+    /// signatures, the orders of the groups and the completeness of the list together.
+    #[test]
+    fn slides_balance() {
+        for n in [10, 11, 12, 13, 14] {
+            let all = all_spheres(n);
+            let index: BTreeMap<String, usize> = all.iter().map(surface_signature).zip(0..).collect();
+            let order: Vec<u128> = all.iter().map(crate::surface_symmetry_order).collect();
+            let mut slides: BTreeMap<(usize, usize), u128> = BTreeMap::new();
+            for (i, s) in all.iter().enumerate() {
+                let sphere = Sphere::of(s);
+                for d in s.darts() {
+                    for clockwise in [false, true] {
+                        let mut other = sphere.clone();
+                        // Each edge is two darts: every slide is counted twice on both sides.
+                        if other.slide(s.origin(d).0, s.target(d).0, clockwise) {
+                            *slides.entry((i, index[&surface_signature(&other.surface())])).or_insert(0) += 1;
+                        }
+                    }
+                }
+            }
+            assert!(slides.len() > all.len() / 2);
+            for (&(i, j), &count) in &slides {
+                let back = slides.get(&(j, i)).copied().unwrap_or(0);
+                assert_eq!(count * order[j], back * order[i], "{n}: classes {i} and {j}");
+            }
+        }
     }
 }
