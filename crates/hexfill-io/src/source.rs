@@ -375,6 +375,25 @@ impl<'r> Source<'r> {
         Ok(all)
     }
 
+    /// Skips white space; the number of lines skipped, or `None` if nothing else is left.
+    pub(crate) fn skip_blank(&mut self) -> Result<Option<u64>, ReadError> {
+        let mut lines = 0;
+        loop {
+            let buffer = match self.reader.fill_buf() {
+                Ok([]) => return Ok(None),
+                Ok(buffer) => buffer,
+                Err(e) => return Err(self.io_error(e)),
+            };
+            let blank = buffer.iter().take_while(|b| b.is_ascii_whitespace()).count();
+            lines += buffer[..blank].iter().filter(|&&b| b == b'\n').count() as u64;
+            let more = blank < buffer.len();
+            self.reader.consume(blank);
+            if more {
+                return Ok(Some(lines));
+            }
+        }
+    }
+
     /// The reader itself, for parsers with their own position.
     pub(crate) fn reader(&mut self) -> &mut (dyn BufRead + 'r) {
         &mut *self.reader

@@ -20,21 +20,21 @@ struct File {
     point_tags: Option<Vec<i64>>,
     quad_tags: Option<Vec<i64>>,
     hex_tags: Option<Vec<i64>>,
-    /// The largest index of all, to be refused when the file has no points but indices with gaps.
+    /// Entries that are passed over.
     #[serde(flatten)]
     rest: std::collections::BTreeMap<String, serde::de::IgnoredAny>,
 }
 
 pub(crate) fn read(mut source: Source<'_>) -> Result<MeshData, ReadError> {
+    let skipped = source.skip_blank()?.ok_or_else(|| source.empty())?;
     let place = |source: &Source<'_>, line: usize| {
-        let position = if line == 0 { Position::Whole } else { Position::Line(line as u64) };
+        let position = if line == 0 { Position::Whole } else { Position::Line(line as u64 + skipped) };
         Box::new(Place { file: source.file().to_owned(), format: source.format(), position })
     };
     let parsed: Result<File, _> = serde_json::from_reader(source.reader());
     let file = match parsed {
         Ok(file) => file,
         Err(e) if e.is_io() => return Err(source.io_error(e.into())),
-        Err(e) if e.is_eof() && e.line() <= 1 && e.column() == 0 => return Err(source.empty()),
         Err(e) if e.is_eof() => {
             return Err(ReadError::Truncated {
                 at: place(&source, e.line()),

@@ -91,15 +91,15 @@ pub(crate) fn read(source: Source<'_>) -> Result<MeshData, ReadError> {
     if lines == 0 {
         return Err(s.empty());
     }
+    if out.point_count() == 0 {
+        return Err(s.truncated("points (`v x y z`), found none"));
+    }
     if let Some((given, line)) = forward {
         let highest = out.point_count() as i64;
         if given > highest {
             let at = s.place_at_line(line);
             return Err(ReadError::IndexOutOfRange { at, what: "vertex".to_owned(), given, lowest: 1, highest });
         }
-    }
-    if out.point_count() == 0 {
-        return Err(s.truncated("points (`v x y z`), found none"));
     }
     let mut used = vec![false; groups.iter().max().map_or(0, |&g| g)];
     for &group in &groups {

@@ -155,7 +155,7 @@ pub(crate) fn read(mut s: Source<'_>) -> Result<MeshData, ReadError> {
         return Err(reader.s.truncated("a section $Nodes"));
     }
     if !reader.has_elements {
-        reader.out.note("the file has no section $Elements");
+        return Err(reader.s.truncated("a section $Elements"));
     }
     reader.entities_as_tags();
     Ok(reader.out.finish())

@@ -35,6 +35,7 @@ struct Reader<'r> {
     polydata: bool,
     out: Assembly,
     points_read: bool,
+    has_cells: bool,
     /// Cells of an unstructured grid.
     cells: Option<CellList>,
     types: Option<Vec<u8>>,
@@ -56,6 +57,7 @@ pub(crate) fn read(mut s: Source<'_>) -> Result<MeshData, ReadError> {
         polydata: false,
         out: Assembly::default(),
         points_read: false,
+        has_cells: false,
         cells: None,
         types: None,
         parts: Default::default(),
@@ -70,9 +72,13 @@ pub(crate) fn read(mut s: Source<'_>) -> Result<MeshData, ReadError> {
             break;
         }
     }
-    reader.place_cells()?;
     if !reader.points_read {
         return Err(reader.s.truncated("a section POINTS"));
+    }
+    reader.place_cells()?;
+    if !reader.has_cells {
+        let sections = if reader.polydata { "a section POLYGONS" } else { "a section CELLS" };
+        return Err(reader.s.truncated(sections));
     }
     Ok(reader.out.finish())
 }
@@ -250,6 +256,7 @@ impl Reader<'_> {
         if !self.points_read {
             return Err(self.s.unsupported(format!("{what} before POINTS"), "put POINTS first"));
         }
+        self.has_cells = true;
         let n = self.count_on_line(what)?;
         let size = self.count_on_line(&format!("numbers in {what}"))?;
         if self.split_cells {
