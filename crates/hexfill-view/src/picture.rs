@@ -34,7 +34,8 @@ pub struct Picture {
     pub height: u32,
     /// What is shown.
     pub panels: Panels,
-    /// Size of the hexes of the cut-away, 0 to 1: 1 is the true size.
+    /// Size of the hexes of the cut-away, 0 to 1: 1 is the true size. More than 20 000 hexes always have their true
+    /// size, because the gaps would be smaller than a pixel.
     pub shrink: f64,
     /// Light lines on a dark ground.
     pub dark: bool,
@@ -182,9 +183,9 @@ impl<'a> Scene<'a> {
         } else {
             ([0x3a, 0x46, 0x52], [0xc4, 0xcb, 0xd2])
         };
-        let shrink = if picture.shrink.is_finite() { picture.shrink.clamp(0.05, 1.0) } else { 1.0 };
+        let shrink = if picture.shrink.is_finite() && drawn.len() <= 20_000 { picture.shrink.clamp(0.05, 1.0) } else { 1.0 };
         let values = input.values();
-        // Thin lines where quads are small: about a twelfth of a pixel-and-a-half line for each doubling.
+        // Thinner lines where quads are small.
         let edge = if drawn.len() > 20_000 {
             0.35
         } else if drawn.len() > 2_000 {

@@ -139,7 +139,7 @@ export class Panel {
     text("cut-out", s.cut === 0 ? "off" : `${Math.round(100 * s.cut)} %`);
     text("peel-out", s.peel === 0 ? "off" : `${s.peel} of ${t.layers - 1}`);
     text("limit-out", s.limit === null ? "all" : digits(s.limit));
-    text("shown-out", `${s.shown ?? data.hexes} of ${data.hexes}${s.shown ? ` (last: h${order[s.shown - 1]})` : ""}`);
+    text("shown-out", `${(s.shown ?? data.hexes).toLocaleString("en")} of ${data.hexes.toLocaleString("en")}${s.shown ? ` (last: h${order[s.shown - 1]})` : ""}`);
     byId("cut-flip").setAttribute("aria-pressed", String(s.flip));
     for (const b of document.querySelectorAll<HTMLButtonElement>(".cut-axis")) {
       const along = s.normal.findIndex((x) => Math.abs(x) === 1);

@@ -62,7 +62,7 @@ export function fromHash(hash: string, start: ViewState, limits: Limits): { stat
   const state: ViewState = structuredClone(start);
   let camera: CameraNumbers | null = null;
   for (const word of hash.replace(/^#/, "").split("&")) {
-    const [key, text = ""] = word.split("=", 2).map((s) => decodeURIComponent(s));
+    const [key, text = ""] = word.split("=", 2).map(decoded);
     const numbers = text.split(",").map(Number);
     const x = numbers[0];
     const within = (low: number, high: number) => Number.isFinite(x) && x >= low && x <= high;
@@ -95,6 +95,14 @@ export function fromHash(hash: string, start: ViewState, limits: Limits): { stat
     }
   }
   return { state, camera };
+}
+
+function decoded(text: string): string {
+  try {
+    return decodeURIComponent(text);
+  } catch {
+    return "";
+  }
 }
 
 export interface Limits {
