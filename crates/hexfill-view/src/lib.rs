@@ -2,7 +2,7 @@
 //!
 //! [`html`] puts the mesh, as base64 typed arrays, and a bundled viewer (`viewer/`, TypeScript on three.js) into
 //! one file that opens from disk. The page asks the browser to refuse every network request (content security
-//! policy `default-src 'none'`), so it works offline and sends nothing anywhere. [`png`] draws a still picture with
+//! policy `default-src 'none'`), so it works offline and sends nothing anywhere. [`png()`] draws a still picture with
 //! a software rasteriser; the page carries one for browsers without WebGL.
 //!
 //! Invariant: both are pure functions of the input: same input, same bytes. They never fail: what does not fit

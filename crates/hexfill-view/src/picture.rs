@@ -183,7 +183,8 @@ impl<'a> Scene<'a> {
         } else {
             ([0x3a, 0x46, 0x52], [0xc4, 0xcb, 0xd2])
         };
-        let shrink = if picture.shrink.is_finite() && drawn.len() <= 20_000 { picture.shrink.clamp(0.05, 1.0) } else { 1.0 };
+        let shrink =
+            if picture.shrink.is_finite() && drawn.len() <= 20_000 { picture.shrink.clamp(0.05, 1.0) } else { 1.0 };
         let values = input.values();
         // Thinner lines where quads are small.
         let edge = if drawn.len() > 20_000 {
