@@ -5,6 +5,7 @@ use crate::ball::{BallCore, BallTets};
 use crate::cell::CellLibrary;
 use crate::colouring::{all_black, colouring};
 use crate::error::ConstructError;
+use crate::handlebody::HandlebodyTets;
 use crate::layer::Layer;
 use crate::matching::light_sides;
 use crate::report::{Report, Route};
@@ -104,13 +105,7 @@ pub fn construct(
     let maker: &dyn InteriorTets = match &options.tets {
         Some(maker) => maker.as_ref(),
         None if surface.is_sphere() => &ball,
-        None => {
-            return Err(ConstructError::InteriorNeeded {
-                genus: surface.genus(),
-                components: surface.n_components(),
-                reason: "give tetrahedra".into(),
-            });
-        }
+        None => &HandlebodyTets,
     };
     let complex = maker.fill(&request, ctx)?;
     let boundary = complex.match_boundary(&request)?;

@@ -1,0 +1,177 @@
+//! Which loops of an embedded surface bound inside: linking numbers with loops pushed outside.
+//!
+//! By Alexander duality a loop of the boundary of a domain in R^3 is null-homologous in the domain iff its linking number
+//! with every loop of the boundary, pushed outward, is 0 (mod 2 for Z/2-homology). So the matrix of linking numbers of
+//! 2 g basis loops with their pushed copies tells the interior's homology without one tetrahedron.
+//! The numbers come from Gauss's integral in closed form for straight segments (Klenin and Langowski 2000), rounded;
+//! they are believed only if they are near whole numbers and the matrix has what theory demands: L - L^T, the
+//! intersection form, is invertible over Z (checked modulo 2 and modulo an odd prime).
+
+use crate::darts::{Darts, NONE, TreeCotree, tree_cotree};
+use crate::error::ConstructError;
+
+/// Basis loops and their linking numbers: `numbers[i][j]` is that of loop `i` with loop `j` pushed outward.
+pub(crate) struct Linking {
+    pub trees: TreeCotree,
+    pub loops: Vec<Vec<u32>>,
+    pub numbers: Vec<Vec<i64>>,
+}
+
+type Point = [f64; 3];
+
+fn sub(a: Point, b: Point) -> Point {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+fn cross(a: Point, b: Point) -> Point {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+fn dot(a: Point, b: Point) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn unit(a: Point) -> Option<Point> {
+    let n = dot(a, a).sqrt();
+    (n > 0.0 && n.is_finite()).then(|| a.map(|x| x / n))
+}
+
+/// Gauss's integral over two segments, in units of 4 pi: the signed area of the sphere they see each other in.
+fn gauss(a: Point, b: Point, c: Point, d: Point) -> f64 {
+    let (r13, r14, r23, r24) = (sub(c, a), sub(d, a), sub(c, b), sub(d, b));
+    let n = [cross(r13, r14), cross(r14, r24), cross(r24, r23), cross(r23, r13)].map(unit);
+    let [Some(n1), Some(n2), Some(n3), Some(n4)] = n else { return 0.0 };
+    let asin = |x: f64| x.clamp(-1.0, 1.0).asin();
+    let area = asin(dot(n1, n2)) + asin(dot(n2, n3)) + asin(dot(n3, n4)) + asin(dot(n4, n1));
+    let sign = dot(cross(sub(d, c), sub(b, a)), r13);
+    if sign == 0.0 { 0.0 } else { area * sign.signum() / (4.0 * std::f64::consts::PI) }
+}
+
+fn failed(reason: &str) -> ConstructError {
+    ConstructError::InteriorNeeded { genus: 0, components: 0, reason: reason.into() }
+}
+
+/// Basis loops of the surface and their linking numbers.
+///
+/// # Errors
+/// [`ConstructError::InteriorNeeded`] if the positions do not tell (degenerate or self-intersecting surface).
+pub(crate) fn linking(s: &Darts, points: &[Point]) -> Result<Linking, ConstructError> {
+    if points.len() < s.n_vertices || points.iter().flatten().any(|x| !x.is_finite()) {
+        return Err(failed("the positions are missing or not finite"));
+    }
+    let trees = tree_cotree(s);
+    let loops: Vec<Vec<u32>> = trees.left.iter().map(|&d| trees.fundamental_loop(s, d)).collect();
+    let at = |v: u32| points[v as usize];
+    // Outward push: a small part of the shortest edge at the vertex, along the sum of the corners' unit normals.
+    let push = |v: u32, first: u32| {
+        let mut normal = [0.0; 3];
+        let mut shortest = f64::INFINITY;
+        for d in s.round(first) {
+            let here = sub(at(s.target(d)), at(v));
+            let mut last = d;
+            while s.next(last) != d {
+                last = s.next(last);
+            }
+            let there = sub(at(s.origin[last as usize]), at(v));
+            shortest = shortest.min(dot(here, here).sqrt());
+            if let Some(n) = unit(cross(here, there)) {
+                normal = [normal[0] + n[0], normal[1] + n[1], normal[2] + n[2]];
+            }
+        }
+        unit(normal).map(|n| {
+            let p = at(v);
+            std::array::from_fn(|c| p[c] + 1e-3 * shortest * n[c])
+        })
+    };
+    let first = s.vertex_darts();
+    let mut pushed: Vec<Vec<Point>> = Vec::new();
+    for l in &loops {
+        let mut line = Vec::with_capacity(l.len());
+        for &d in l {
+            let v = s.origin[d as usize];
+            debug_assert_ne!(first[v as usize], NONE);
+            line.push(push(v, first[v as usize]).ok_or_else(|| failed("a vertex has no outward direction"))?);
+        }
+        pushed.push(line);
+    }
+    let mut numbers = vec![vec![0i64; loops.len()]; loops.len()];
+    for (i, l) in loops.iter().enumerate() {
+        for (j, line) in pushed.iter().enumerate() {
+            let mut sum = 0.0;
+            for &d in l {
+                let (a, b) = (at(s.origin[d as usize]), at(s.target(d)));
+                for k in 0..line.len() {
+                    sum += gauss(a, b, line[k], line[(k + 1) % line.len()]);
+                }
+            }
+            if (sum - sum.round()).abs() > 0.05 {
+                return Err(failed("linking numbers are not whole: the surface is degenerate or meets itself"));
+            }
+            numbers[i][j] = sum.round() as i64;
+        }
+    }
+    let n = loops.len();
+    let form: Vec<Vec<i64>> = (0..n).map(|i| (0..n).map(|j| numbers[i][j] - numbers[j][i]).collect()).collect();
+    for p in [2, 1_000_003] {
+        if rank(&form, p) != n {
+            return Err(failed("linking numbers contradict the intersections of loops: the surface meets itself"));
+        }
+        if 2 * rank(&numbers, p) != n {
+            return Err(failed("linking numbers contradict Alexander duality: the surface meets itself"));
+        }
+    }
+    Ok(Linking { trees, loops, numbers })
+}
+
+/// Rank modulo a prime.
+fn rank(matrix: &[Vec<i64>], p: i64) -> usize {
+    let mut m: Vec<Vec<i64>> = matrix.iter().map(|r| r.iter().map(|x| x.rem_euclid(p)).collect()).collect();
+    let columns = matrix.first().map_or(0, Vec::len);
+    let mut rank = 0;
+    for c in 0..columns {
+        let Some(pivot) = (rank..m.len()).find(|&r| m[r][c] != 0) else { continue };
+        m.swap(rank, pivot);
+        let inverse = power(m[rank][c], p - 2, p);
+        let row: Vec<i64> = m[rank].iter().map(|x| x * inverse % p).collect();
+        for other in m.iter_mut().skip(rank + 1) {
+            let factor = other[c];
+            for (x, y) in other.iter_mut().zip(&row) {
+                *x = (*x - factor * y).rem_euclid(p);
+            }
+        }
+        m[rank] = row;
+        rank += 1;
+    }
+    rank
+}
+
+fn power(mut base: i64, mut exponent: i64, p: i64) -> i64 {
+    let mut result = 1;
+    while exponent > 0 {
+        if exponent & 1 == 1 {
+            result = result * base % p;
+        }
+        base = base * base % p;
+        exponent >>= 1;
+    }
+    result
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn linked_squares_have_linking_number_one() {
+        let a = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 2.0, 0.0], [0.0, 2.0, 0.0]];
+        let b = |x: f64| [[x, 1.0, -1.0], [x + 2.0, 1.0, -1.0], [x + 2.0, 1.0, 1.0], [x, 1.0, 1.0]];
+        let number = |b: [Point; 4]| -> f64 {
+            (0..4)
+                .flat_map(|i| (0..4).map(move |j| (i, j)))
+                .map(|(i, j)| gauss(a[i], a[(i + 1) % 4], b[j], b[(j + 1) % 4]))
+                .sum()
+        };
+        assert!((number(b(1.0)).abs() - 1.0).abs() < 1e-12);
+        assert!(number(b(5.0)).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,147 @@
+//! Tori of all parities and plates with holes: judged proper, boundary identical, impossible ones refused with a
+//! certificate that is verified here.
+
+use hexfill_check::{Judged, Level, judge};
+use hexfill_construct::{ConstructError, Construction, Existence, Options, RouteChoice, construct, existence};
+use hexfill_mesh::generate::{holed_plate, torus};
+use hexfill_mesh::{Context, Edge, QuadSurface};
+use std::collections::{BTreeMap, BTreeSet};
+
+fn check(surface: &QuadSurface, made: &Construction) {
+    let hexes: Vec<[u32; 8]> = made.mesh.hexes().iter().map(|h| h.map(|v| v.0)).collect();
+    let quads: Vec<[u32; 4]> = surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
+    let input = Judged::connectivity(made.mesh.n_vertices(), &hexes).with_surface(&quads);
+    let report = judge(&input, &hexfill_check::Options::default().up_to(Level::L3), &Context::default());
+    assert!(report.passed(Level::L3), "{:?}", report.failures);
+    // A handlebody: Euler characteristic is half that of its boundary.
+    let edges = made.mesh.edges().len() as i64;
+    let quads = (6 * hexes.len() + surface.n_quads()) as i64 / 2;
+    let vertices = made.mesh.used_vertices().iter().filter(|&&u| u).count() as i64;
+    assert_eq!(2 * (vertices - edges + quads - hexes.len() as i64), surface.euler_characteristic());
+}
+
+/// Positions of `torus(n, m, 0)`: `around` steps round the axis, the other index round the tube.
+fn torus_points(n: u32, m: u32, n_is_tube: bool) -> Vec<[f64; 3]> {
+    let turn = std::f64::consts::TAU;
+    let mut points = Vec::new();
+    for j in 0..m {
+        for i in 0..n {
+            let (a, b) = (turn * f64::from(i) / f64::from(n), turn * f64::from(j) / f64::from(m));
+            let (tube, axis) = if n_is_tube { (a, b) } else { (b, a) };
+            let r = 3.0 + tube.cos();
+            points.push([r * axis.cos(), r * axis.sin(), tube.sin()]);
+        }
+    }
+    points
+}
+
+/// The same surface facing outward for these positions.
+fn outward(surface: &QuadSurface, points: &[[f64; 3]]) -> QuadSurface {
+    let mut volume = 0.0;
+    for q in surface.quads() {
+        let p = q.map(|v| points[v.index()]);
+        for [a, b, c] in [[p[0], p[1], p[2]], [p[0], p[2], p[3]]] {
+            volume += a[0] * (b[1] * c[2] - b[2] * c[1])
+                + a[1] * (b[2] * c[0] - b[0] * c[2])
+                + a[2] * (b[0] * c[1] - b[1] * c[0]);
+        }
+    }
+    if volume > 0.0 { surface.clone() } else { surface.inverted() }
+}
+
+fn is_odd_cycle(surface: &QuadSurface, cycle: &[Edge]) {
+    let all: BTreeSet<Edge> = surface.darts().map(|d| Edge::new(surface.origin(d), surface.target(d))).collect();
+    assert_eq!(cycle.len() % 2, 1);
+    let mut degree: BTreeMap<_, usize> = BTreeMap::new();
+    for e in cycle {
+        assert!(all.contains(e));
+        *degree.entry(e.0).or_default() += 1;
+        *degree.entry(e.1).or_default() += 1;
+    }
+    assert!(degree.values().all(|d| d % 2 == 0));
+}
+
+#[test]
+fn tori_of_all_parities() {
+    for (n, m) in [(3, 4), (4, 3), (4, 4), (5, 4), (4, 5), (6, 3), (6, 6), (8, 7), (7, 8)] {
+        for n_is_tube in [true, false] {
+            let points = torus_points(n, m, n_is_tube);
+            let surface = outward(&torus(n, m, 0).unwrap(), &points);
+            let tube = if n_is_tube { n } else { m };
+            let made = construct(&surface, Some(&points), &Options::default(), &Context::default());
+            if tube % 2 == 0 {
+                assert!(matches!(existence(&surface, Some(&points)), Existence::Exists { .. }));
+                let made = made.unwrap();
+                println!("torus {n} x {m}, tube {tube}: {}", made.report);
+                check(&surface, &made);
+            } else {
+                let Existence::OddCycleBounds { cycle } = existence(&surface, Some(&points)) else { panic!("exists") };
+                is_odd_cycle(&surface, &cycle);
+                match made {
+                    Err(ConstructError::OddCycleBounds { cycle, .. }) => is_odd_cycle(&surface, &cycle),
+                    other => panic!("{other:?}"),
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn plates_with_holes() {
+    for genus in 0..=4 {
+        let surface = holed_plate(genus, 1).unwrap();
+        let points = plate_points(genus);
+        assert_eq!(surface.genus(), genus as u64);
+        let made = construct(&surface, Some(&points), &Options::default(), &Context::default()).unwrap();
+        println!("genus {genus}: {}", made.report);
+        check(&surface, &made);
+        // Erickson's colouring needs no bipartition and costs more.
+        let options = Options { route: RouteChoice::Erickson, ..Options::default() };
+        let old = construct(&surface, Some(&points), &options, &Context::default()).unwrap();
+        println!("genus {genus}: {}", old.report);
+        check(&surface, &old);
+        assert!(old.report.n_hexes() > made.report.n_hexes());
+    }
+}
+
+/// Corner positions of `holed_plate(genus, 1)`, numbered by first use as the generator does.
+fn plate_points(genus: usize) -> Vec<[f64; 3]> {
+    use hexfill_mesh::cube::{FACETS, POSITIONS};
+    let filled = |x: i32, y: i32, z: i32| {
+        let inside = (0..(2 * genus + 1) as i32).contains(&x) && (0..3).contains(&y) && z == 0;
+        inside && !(x % 2 == 1 && y == 1)
+    };
+    let mut points: Vec<[f64; 3]> = Vec::new();
+    for y in 0..3 {
+        for x in 0..(2 * genus + 1) as i32 {
+            if !filled(x, y, 0) {
+                continue;
+            }
+            for (f, facet) in FACETS.iter().enumerate() {
+                let step = if f % 2 == 0 { -1 } else { 1 };
+                let beside = [(step, 0, 0), (0, step, 0), (0, 0, step)][f / 2];
+                if filled(x + beside.0, y + beside.1, beside.2) {
+                    continue;
+                }
+                for k in facet {
+                    let p = POSITIONS[*k];
+                    let p = [f64::from(x) + f64::from(p[0]), f64::from(y) + f64::from(p[1]), f64::from(p[2])];
+                    if !points.contains(&p) {
+                        points.push(p);
+                    }
+                }
+            }
+        }
+    }
+    points
+}
+
+#[test]
+fn without_positions_an_odd_torus_is_not_decided() {
+    let surface = torus(4, 5, 0).unwrap();
+    assert!(matches!(existence(&surface, None), Existence::Unknown { .. }));
+    let made = construct(&surface, None, &Options::default(), &Context::default());
+    assert!(matches!(made, Err(ConstructError::InteriorNeeded { genus: 1, .. })));
+    assert!(matches!(existence(&torus(4, 6, 0).unwrap(), None), Existence::Exists { .. }));
+    assert!(matches!(existence(&torus(3, 5, 0).unwrap(), None), Existence::OddQuads { given: 15 }));
+}
