@@ -18,6 +18,21 @@ fn main() -> std::io::Result<()> {
     if let Some(k) = std::env::args().nth(2).and_then(|k| k.parse().ok()) {
         shapes.push(("large", "Large grid", common::grid(k, k, k)));
     }
+    // What does not fit is named on the page; an empty mesh is a page too.
+    let mut broken = common::grid(3, 2, 2);
+    broken.points[0] = [f64::NAN; 3];
+    let mut input = ViewInput {
+        title: "<b>Broken</b> </script> \"input\"",
+        points: &broken.points,
+        mesh: &broken.mesh,
+        hex_values: Some(("Scaled Jacobian", &[1.0])),
+        shelling: Some(&[]),
+        facts: &[],
+    };
+    std::fs::write(Path::new(&folder).join("broken.html"), html(&input))?;
+    let nothing = hexfill_mesh::HexMesh::try_new(0, &[]).expect("no hexes are a mesh");
+    input = ViewInput { title: "Empty", mesh: &nothing, hex_values: None, shelling: None, ..input };
+    std::fs::write(Path::new(&folder).join("empty.html"), html(&input))?;
     for (name, title, shape) in &shapes {
         let quality = common::scaled_jacobian(shape);
         let order = common::facet_order(&shape.mesh);

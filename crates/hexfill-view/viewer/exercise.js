@@ -79,6 +79,17 @@
   for (const k of ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"]) await key(k, { shiftKey: true });
   await key("0");
 
+  // The link, the picture and the list of keys.
+  await key("c");
+  await wait(200);
+  check($("status").textContent === "Link copied" || $("link-text").value.includes("#cam="), "a link to copy");
+  $("link-dialog").close();
+  await key("s");
+  await wait(200);
+  await key("?");
+  check($("help").open && $("keys").rows.length > 10, "the list of keys");
+  $("help").close();
+
   // Picking: the middle of the canvas is on the mesh.
   const canvas = $("canvas");
   const at = { offsetX: 0, clientX: canvas.clientWidth / 2, clientY: canvas.clientHeight / 2, bubbles: true, button: 0, pointerId: 1 };

@@ -13,6 +13,8 @@ drive() {
 }
 drive ball exercised --exercise
 drive refinement refinement --exercise
+drive broken broken
+drive empty empty
 drive ball start
 drive ball cut --hash 'cut=0.5&shrink=0.85'
 drive ball xray --hash 'singular=inside&boundary=xray&chord=all' --dark
