@@ -116,10 +116,7 @@ impl Run<'_> {
         if self.findings.count(Rule::PointsCount) + self.findings.count(Rule::PositionNotFinite) > 0 {
             return Some("level 4 failed".into());
         }
-        match self.level_5(points, &boundary) {
-            Ok(()) => None,
-            Err(why) => Some(why),
-        }
+        self.level_5(points, &boundary).err()
     }
 
     /// det J > 0 everywhere, hex by hex, and quality.

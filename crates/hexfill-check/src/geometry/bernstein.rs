@@ -109,15 +109,15 @@ impl Frame {
         // Crosses of E2[a][c] with E3[a][b] and with E3[1 - a][b], index a + 2 b + 4 c.
         let mut same = [[0.0; 3]; 8];
         let mut other = [[0.0; 3]; 8];
-        for i in 0..8 {
+        for (i, (same, other)) in same.iter_mut().zip(&mut other).enumerate() {
             let (a, y, c) = (i & 1, i >> 1 & 1, i >> 2);
-            same[i] = cross(e2[a + 2 * c], e3[a + 2 * y]);
-            other[i] = cross(e2[a + 2 * c], e3[1 - a + 2 * y]);
+            *same = cross(e2[a + 2 * c], e3[a + 2 * y]);
+            *other = cross(e2[a + 2 * c], e3[1 - a + 2 * y]);
         }
         let (mut corner_sum, mut edge_sum) = (0.0, 0.0);
-        for i in 0..8 {
+        for (i, &cross) in same.iter().enumerate() {
             let (a, y, c) = (i & 1, i >> 1 & 1, i >> 2);
-            let value = dot(e1[y + 2 * c], same[i]);
+            let value = dot(e1[y + 2 * c], cross);
             b[at(2 * a, 2 * y, 2 * c)] = value;
             corner_sum += value;
         }
