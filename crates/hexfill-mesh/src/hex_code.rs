@@ -346,11 +346,11 @@ mod tests {
         for (i, frame) in t.frames.iter().enumerate() {
             assert_eq!(usize::from(t.index[octal(frame)]), i);
         }
-        for side in 0..6 {
+        for (side, facet) in FACETS.iter().enumerate() {
             for corner in 0..8 {
                 let other = corner_across(side, corner);
                 assert_eq!(corner_across(side, other), corner);
-                assert_ne!(FACETS[side].contains(&corner), FACETS[side].contains(&other));
+                assert_ne!(facet.contains(&corner), facet.contains(&other));
             }
         }
     }
