@@ -50,7 +50,7 @@ impl ViewInput<'_> {
         if let Some((name, values)) = self.hex_values
             && values.len() != n_hexes
         {
-            problems.push(format!("{} values of \"{name}\" were given for {n_hexes} hexes: not shown", values.len()));
+            problems.push(format!("\"{name}\" has {} values for {n_hexes} hexes: not shown", values.len()));
         }
         if let Some(order) = self.shelling
             && self.order().is_none()
@@ -94,6 +94,6 @@ pub fn html(input: &ViewInput<'_>) -> String {
 ///
 /// # Errors
 /// Those of `out`.
-pub fn write_html(input: &ViewInput<'_>, out: &mut impl Write) -> io::Result<()> {
+pub fn write_html(input: &ViewInput<'_>, out: &mut (impl Write + ?Sized)) -> io::Result<()> {
     page::write(input, out)
 }

@@ -59,7 +59,7 @@ struct Colours {
 }
 
 /// Writes the page.
-pub(crate) fn write(input: &ViewInput<'_>, out: &mut impl Write) -> io::Result<()> {
+pub(crate) fn write(input: &ViewInput<'_>, out: &mut (impl Write + ?Sized)) -> io::Result<()> {
     let mut rest = TEMPLATE;
     while let Some((before, after)) = rest.split_once("<!--") {
         let (mark, after) = after.split_once("-->").expect("the template closes its comments");

@@ -154,7 +154,7 @@ fn what_does_not_fit_is_left_out_and_named() {
     let problems = input.problems();
     assert_eq!(problems.len(), 3, "{problems:?}");
     assert!(problems[0].starts_with("1 of 2 hexes have a corner without a finite position"));
-    assert!(problems[1].contains("1 values of \"volume\" were given for 2 hexes"));
+    assert!(problems[1].contains("\"volume\" has 1 values for 2 hexes"));
     assert!(problems[2].contains("no order of the 2 hexes"));
     let data = data(&html(&input));
     assert_eq!(data["problems"].as_array().unwrap().len(), 3);

@@ -37,8 +37,8 @@ export class Viewer {
   private readonly facets: Facets;
   private readonly overlays = new Map<string, { key: string; objects: Group }>();
   private readonly wire: LineSegments2 | null;
-  /** The vertices of the boundary that can be drawn. */
-  private readonly outline: number[];
+  /** The corners of the boundary that can be drawn, each a vertex and its hex. */
+  private readonly outline: [number, number][] = [];
   private state: ViewState | null = null;
   private visible: Uint8Array;
   private dirty = false;
@@ -73,8 +73,10 @@ export class Viewer {
     if (this.wire) this.scene.add(this.wire);
     this.pickScene.add(this.facets.pick);
 
-    const outline = new Set(t.boundaryFacets.filter((f) => this.drawable[Math.floor(f / 6)]).flatMap((f) => facetVertices(t.corners, f)));
-    this.outline = [...outline];
+    for (const f of t.boundaryFacets) {
+      const h = Math.floor(f / 6);
+      if (this.drawable[h]) this.outline.push(...facetVertices(t.corners, f).map((v): [number, number] => [v, h]));
+    }
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.zoomToCursor = true;
@@ -275,14 +277,14 @@ export class Viewer {
     const from = (direction ?? this.camera.position.clone().sub(this.controls.target)).clone().normalize();
     const right = new Vector3(-from.y, from.x, 0).normalize();
     const up = from.clone().cross(right);
-    const reach = 1 + (this.state?.explode ?? 0);
+    const explode = this.state?.explode ?? 0;
     const vertical = 0.87 * Math.tan(HALF_ANGLE);
     const horizontal = 0.92 * Math.tan(HALF_ANGLE) * this.camera.aspect;
     // A point at (r, u, f) in the camera's axes is in sight if |r - r0| <= horizontal * (distance - f), likewise u;
     // each bound is a line in (place of the target, distance), so the extremes of r + t f and r - t f decide.
     const most = [-Infinity, -Infinity, -Infinity, -Infinity];
-    for (const v of this.outline) {
-      const p = this.vertex(v).multiplyScalar(reach);
+    for (const [v, h] of this.outline) {
+      const p = this.vertex(v).addScaledVector(new Vector3().fromArray(this.facets.centres, 4 * h), explode);
       const [r, u, f] = [p.dot(right), p.dot(up), p.dot(from)];
       [r / horizontal + f, -r / horizontal + f, u / vertical + f, -u / vertical + f].forEach((x, i) => (most[i] = Math.max(most[i], x)));
     }
