@@ -168,7 +168,12 @@ impl<'a> Walk<'a> {
     }
 
     /// Walks below a node down to the last level.
-    pub(crate) fn descend(&mut self, parent: &Complex, automorphisms: u16, ctx: &Context<'_>) -> Result<(), EnumerateError> {
+    pub(crate) fn descend(
+        &mut self,
+        parent: &Complex,
+        automorphisms: u16,
+        ctx: &Context<'_>,
+    ) -> Result<(), EnumerateError> {
         if parent.n_cubes() + 1 == self.params.cubes {
             if let Some(reason) = ctx.stop() {
                 return Err(EnumerateError::Stopped { reason });

@@ -76,8 +76,7 @@ impl Code {
     /// # Errors
     /// [`EnumerateError::BadCode`] or [`EnumerateError::BadComplex`] if no complex has this code.
     pub fn decode(&self) -> Result<Complex, EnumerateError> {
-        let bad =
-            |why: &str| Err(EnumerateError::BadCode { given: self.to_text(), why: why.into() });
+        let bad = |why: &str| Err(EnumerateError::BadCode { given: self.to_text(), why: why.into() });
         let mut cubes = [[0u8; 8]; MAX_CUBES];
         cubes[0] = [0, 1, 2, 3, 4, 5, 6, 7];
         for (i, word) in self.words[..self.n_cubes() - 1].iter().enumerate() {
@@ -174,9 +173,9 @@ pub(crate) fn cube_invariants(c: &Complex) -> [u64; MAX_CUBES] {
     let degree = cube_degrees(c);
     let mut first = [0u64; MAX_CUBES];
     for (slot, cube) in first.iter_mut().zip(c.cubes()) {
-        *slot = mix(cube.iter().fold(0u64, |sum, &v| {
-            sum.wrapping_add(DEGREE_WEIGHT[degree[v as usize & 63] as usize & 15])
-        }));
+        *slot = mix(cube
+            .iter()
+            .fold(0u64, |sum, &v| sum.wrapping_add(DEGREE_WEIGHT[degree[v as usize & 63] as usize & 15])));
     }
     let mut second = [0u64; MAX_CUBES];
     for a in 0..c.n_cubes() {
@@ -203,13 +202,8 @@ pub fn canonical(c: &Complex) -> Labelling {
 /// As [`canonical`], with the cubes' invariants at hand.
 pub(crate) fn search(c: &Complex, invariants: &[u64; MAX_CUBES]) -> Labelling {
     let n = c.n_cubes();
-    let mut walk = Walk {
-        c,
-        best: [u64::MAX; MAX_CUBES - 1],
-        automorphisms: 0,
-        signs: 0,
-        first_position: [u8::MAX; MAX_CUBES],
-    };
+    let mut walk =
+        Walk { c, best: [u64::MAX; MAX_CUBES - 1], automorphisms: 0, signs: 0, first_position: [u8::MAX; MAX_CUBES] };
     // The rarest class of cubes, the smallest value among equals.
     let mut chosen = (usize::MAX, 0u64);
     for &value in &invariants[..n] {
@@ -271,13 +265,8 @@ pub(crate) fn search(c: &Complex, invariants: &[u64; MAX_CUBES]) -> Labelling {
 
 /// As [`canonical`], trying all flags: slower and independent of the invariants, for tests.
 pub fn canonical_over_all_flags(c: &Complex) -> Labelling {
-    let mut walk = Walk {
-        c,
-        best: [u64::MAX; MAX_CUBES - 1],
-        automorphisms: 0,
-        signs: 0,
-        first_position: [u8::MAX; MAX_CUBES],
-    };
+    let mut walk =
+        Walk { c, best: [u64::MAX; MAX_CUBES - 1], automorphisms: 0, signs: 0, first_position: [u8::MAX; MAX_CUBES] };
     for a in 0..c.n_cubes() {
         for s in 0..48 {
             walk.from_flag(a, s);

@@ -72,9 +72,10 @@ impl Plan {
             Rule::Strict => {
                 if params.filter.is_some() {
                     return Err(EnumerateError::BadParameters {
-                        why: "under rule strict the chord filter needs the level engine: a complex may choose a parent \
+                        why:
+                            "under rule strict the chord filter needs the level engine: a complex may choose a parent \
                               that the filter drops"
-                            .into(),
+                                .into(),
                     });
                 }
                 let split = params.cubes.saturating_sub(3).max(1);

@@ -153,8 +153,7 @@ impl Ledger {
     pub fn open(folder: &Path, part: Chunk, header: &Header) -> Result<Self, EnumerateError> {
         std::fs::create_dir_all(folder).map_err(io(folder))?;
         let path = ledger_path(folder, part);
-        let mut file =
-            OpenOptions::new().read(true).append(true).create(true).open(&path).map_err(io(&path))?;
+        let mut file = OpenOptions::new().read(true).append(true).create(true).open(&path).map_err(io(&path))?;
         file.try_lock().map_err(|_| EnumerateError::Io {
             path: path.clone(),
             source: std::io::Error::new(std::io::ErrorKind::WouldBlock, "another process is writing to it"),

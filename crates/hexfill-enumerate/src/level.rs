@@ -63,8 +63,7 @@ pub fn first_level(params: &Params, keep: Keep<'_>) -> Level {
     let (boundary, shape) = counter.class(&cube, &labelling, labelling.code.hash128());
     let mut found = Found::default();
     found.look(&keep.wanted, &mut counter, &boundary, &shape, labelling.code);
-    let codes =
-        if keep.codes && params.extends(1, shape.chords) { vec![labelling.code] } else { Vec::new() };
+    let codes = if keep.codes && params.extends(1, shape.chords) { vec![labelling.code] } else { Vec::new() };
     Level { cubes: 1, tally: counter.finish(), codes, found, set_bytes: 0 }
 }
 
@@ -167,7 +166,8 @@ fn grow<K: HashKey>(
         Ok(())
     };
     run_on(options.threads, &work)?;
-    let mut level = Level { cubes, tally: Tally::default(), codes: Vec::new(), found: Found::default(), set_bytes: set.bytes() };
+    let mut level =
+        Level { cubes, tally: Tally::default(), codes: Vec::new(), found: Found::default(), set_bytes: set.bytes() };
     for (tally, codes, found) in parts.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner) {
         level.tally.merge(&tally);
         level.codes.extend(codes);

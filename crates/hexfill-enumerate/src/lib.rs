@@ -13,6 +13,7 @@ mod ledger;
 mod level;
 mod listing;
 mod params;
+mod report;
 mod shape;
 mod strict;
 mod tally;
@@ -29,6 +30,7 @@ pub use ledger::{Header, Ledger, Merged, Record, ledger_path, merge, read_ledger
 pub use level::{Keep, Level, LevelOptions, all_levels, first_level, next_level};
 pub use listing::{ListFormat, line, mesh_of, weill_order};
 pub use params::{Filter, Params, Rule};
+pub use report::{histograms, table};
 pub use shape::{Selection, Shape, parse_range, shape};
 pub use strict::{StrictOptions, extend_strict, strict_violations};
 pub use tally::{Histogram, MASS_UNIT, Tally};

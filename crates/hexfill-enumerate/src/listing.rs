@@ -105,8 +105,7 @@ fn unbuild(c: &Complex, names: &mut Vec<usize>, order: &mut Vec<usize>) -> bool 
 /// Whether every vertex that cube `a` shares with others lies on one of its glued sides: the others are new when it is added.
 fn shares_by_gluing_only(c: &Complex, a: usize) -> bool {
     let others = (0..c.n_cubes()).filter(|&b| b != a).fold(0u64, |all, b| all | c.sets[b]);
-    let glued =
-        (0..6).filter(|&f| c.next[a][f] != FREE).fold(0u64, |all, f| all | side_set_of(&c.cubes[a], f));
+    let glued = (0..6).filter(|&f| c.next[a][f] != FREE).fold(0u64, |all, f| all | side_set_of(&c.cubes[a], f));
     c.sets[a] & others & !glued == 0
 }
 

@@ -491,7 +491,8 @@ pub fn strict_violations(c: &Complex) -> Vec<String> {
                 _ => false,
             };
             if !legal {
-                let what = if n == 2 { "two vertices that are not an edge of both".into() } else { format!("{n} vertices") };
+                let what =
+                    if n == 2 { "two vertices that are not an edge of both".into() } else { format!("{n} vertices") };
                 out.push(format!("h{b} and h{a} share {what} and {glued} facets"));
             }
         }

@@ -56,9 +56,10 @@ impl Target {
     /// Whether a boundary is this one.
     pub fn is(&self, boundary: &Boundary) -> bool {
         boundary.has_key(&self.key)
-            && self.signature.as_ref().is_none_or(|wanted| {
-                boundary.to_surface().is_ok_and(|surface| surface_signature(&surface) == *wanted)
-            })
+            && self
+                .signature
+                .as_ref()
+                .is_none_or(|wanted| boundary.to_surface().is_ok_and(|surface| surface_signature(&surface) == *wanted))
     }
 }
 

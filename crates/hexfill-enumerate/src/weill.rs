@@ -198,8 +198,7 @@ impl<F: FnMut(&Complex, u8)> Site<'_, F> {
 /// legal complex: rules 1 and 2 against every other cube (rule 3 is a property of the whole complex).
 pub(crate) fn could_be_last(c: &Complex, m: usize) -> bool {
     let own = c.sets[m];
-    let free: [u64; 6] =
-        std::array::from_fn(|f| if c.next[m][f] == FREE { side_set_of(&c.cubes[m], f) } else { 0 });
+    let free: [u64; 6] = std::array::from_fn(|f| if c.next[m][f] == FREE { side_set_of(&c.cubes[m], f) } else { 0 });
     (0..c.n_cubes()).filter(|&a| a != m).all(|a| {
         let common = own & c.sets[a];
         match common.count_ones() {

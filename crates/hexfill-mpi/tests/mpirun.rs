@@ -1,0 +1,68 @@
+//! Runs the program under `mpirun` with 1, 2 and 4 ranks; skipped, saying so, where there is no `mpirun`.
+
+use std::process::{Command, Output};
+
+fn mpirun(ranks: usize, args: &[&str]) -> Option<Output> {
+    let mut command = Command::new("mpirun");
+    // Open MPI refuses to run as root and on few cores without these; MPICH ignores them.
+    command.env("OMPI_ALLOW_RUN_AS_ROOT", "1").env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1");
+    command.env("OMPI_MCA_rmaps_base_oversubscribe", "1");
+    command.args(["-n", &ranks.to_string(), env!("CARGO_BIN_EXE_hexfill-mpi")]).args(args);
+    match command.output() {
+        Ok(output) => Some(output),
+        Err(error) => {
+            eprintln!("skipped: mpirun cannot be run: {error}");
+            None
+        }
+    }
+}
+
+fn json(output: &Output) -> serde_json::Value {
+    let text = String::from_utf8_lossy(&output.stdout);
+    serde_json::from_str(&text).unwrap_or_else(|e| panic!("{e}: {text} {}", String::from_utf8_lossy(&output.stderr)))
+}
+
+#[test]
+fn totals_do_not_depend_on_the_number_of_ranks() {
+    for rule in ["strict", "weill"] {
+        let mut first = None;
+        for ranks in [1, 2, 4] {
+            let Some(output) = mpirun(ranks, &["6", "--rule", rule, "--chunks", "40", "--find", "6x[4,4]"]) else { return };
+            assert!(output.status.success());
+            let report = json(&output);
+            assert_eq!(report["counts"]["classes"], if rule == "strict" { 4026 } else { 9500 });
+            assert_eq!(*first.get_or_insert_with(|| report.clone()), report, "{ranks} ranks");
+        }
+    }
+}
+
+#[test]
+fn a_worker_that_reports_an_error_is_survived() {
+    let Some(output) = mpirun(3, &["5", "--chunks", "10", "--fail-rank", "2"]) else { return };
+    assert!(output.status.success());
+    let report = json(&output);
+    assert_eq!((&report["counts"]["classes"], &report["undone"]), (&240.into(), &0.into()));
+    assert_eq!(report["failures"].as_array().map(Vec::len), Some(1));
+    // With no other worker the chunks stay undone, and the exit code says so.
+    let Some(output) = mpirun(2, &["5", "--chunks", "10", "--fail-rank", "1"]) else { return };
+    assert!(!output.status.success());
+    assert_eq!(json(&output)["undone"], 10);
+}
+
+#[test]
+fn the_ledger_is_shared_with_the_other_drivers() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().to_str().unwrap();
+    let args = ["6", "--chunks", "40", "--checkpoint", path];
+    let Some(output) = mpirun(2, &args) else { return };
+    let first = json(&output);
+    let merged = hexfill_enumerate::merge(folder.path()).unwrap();
+    assert_eq!((merged.records.len(), merged.tally().classes), (40, 4026));
+    assert!(merged.inconsistencies().is_empty());
+    let Some(again) = mpirun(3, &args) else { return };
+    assert_eq!(json(&again), first);
+    let other = ["6", "--chunks", "40", "--checkpoint", path, "--rule", "weill"];
+    let Some(refused) = mpirun(3, &other) else { return };
+    assert!(!refused.status.success());
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("rule is strict, not weill"));
+}
