@@ -90,7 +90,7 @@ pub fn html(input: &ViewInput<'_>) -> String {
     String::from_utf8(bytes).expect("the page is made of strings")
 }
 
-/// Writes the page to `out`: about 0.7 MB for the viewer, and 35 to 100 bytes a hex.
+/// Writes the page to `out`: about 0.7 MB for the viewer, and 45 to 100 bytes a hex.
 ///
 /// # Errors
 /// Those of `out`.
