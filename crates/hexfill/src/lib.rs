@@ -1,1 +1,27 @@
-//! Fill a closed quad surface with hexahedra, leaving the surface exactly as it is
+//! **hexfill fills a closed quad surface with hexahedra and leaves the surface exactly as it is.**
+//!
+//! This is the facade: [`Problem::load`] takes a file, a catalogue name or a signature, [`fill`] picks the strategy
+//! and returns meshes the independent judge has accepted. The rooms behind it are re-exported.
+//!
+//! ```
+//! use hexfill::{Context, FillOptions, Problem, fill};
+//!
+//! let problem = Problem::load(":schneiders-pyramid", None)?;
+//! let result = fill(&problem, &FillOptions::default(), &Context::default())?;
+//! assert_eq!(result.meshes[0].mesh.n_hexes(), 36);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+pub mod catalog;
+mod fill;
+mod problem;
+
+pub use fill::{
+    FillError, FillOptions, FillReport, FillResult, Filled, Route, Strategy, check_fillable, fill, mesh_data, start_points,
+};
+pub use hexfill_mesh::{Context, Progress, StopReason};
+pub use problem::{Problem, ProblemError, is_named};
+pub use {
+    hexfill_check as check, hexfill_construct as construct, hexfill_embed as embed, hexfill_enumerate as enumerate,
+    hexfill_io as io, hexfill_mesh as mesh, hexfill_search as search, hexfill_view as view,
+};

@@ -1,0 +1,247 @@
+//! `hexfill atlas build|stats|lookup|prune`.
+
+use crate::console::Console;
+use crate::exit::Exit;
+use crate::files;
+use anyhow::bail;
+use hexfill::search::{Atlas, Cavity, GrowOptions, GrowthLog, MAX_CAP, MAX_QUADS};
+use hexfill::{Context, StopReason};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Flags of `atlas`.
+#[derive(clap::Args)]
+pub struct AtlasArgs {
+    #[command(subcommand)]
+    command: AtlasCommand,
+}
+
+#[derive(clap::Subcommand)]
+enum AtlasCommand {
+    /// Grow an atlas from one cube, level by level; an interrupted build goes on from its last whole level.
+    Build {
+        /// The file to write or to go on with.
+        #[arg(short, long, value_name = "FILE")]
+        output: PathBuf,
+        /// Most quads a ball's boundary may have on the way.
+        #[arg(long, default_value_t = 24, value_parser = clap::value_parser!(u64).range(6..=MAX_CAP as u64))]
+        cap: u64,
+        /// Grow to this many hexes.
+        #[arg(long, default_value_t = 40)]
+        levels: u32,
+        /// States to keep per class (0: every Pareto state, which proves lower bounds).
+        #[arg(long, default_value_t = 1)]
+        width: u32,
+    },
+    /// Count what an atlas holds.
+    Stats {
+        /// The atlas [default: the embedded one].
+        file: Option<PathBuf>,
+    },
+    /// Say what an atlas knows about a surface.
+    Lookup {
+        /// The surface.
+        surface: String,
+        /// The atlas [default: the embedded one].
+        #[arg(long, value_name = "FILE")]
+        atlas: Option<PathBuf>,
+    },
+    /// Write a smaller, packed atlas.
+    Prune {
+        /// The atlas to read.
+        file: PathBuf,
+        /// The packed atlas to write.
+        #[arg(short, long, value_name = "FILE")]
+        output: String,
+        /// Keep classes of at most this many quads.
+        #[arg(long, default_value_t = 20)]
+        max_quads: usize,
+        /// Also keep larger classes with fillings of at most this many hexes.
+        #[arg(long, default_value_t = 0)]
+        max_hexes: u32,
+        /// Fillings to keep per class.
+        #[arg(long, default_value_t = 1)]
+        width: usize,
+    },
+}
+
+#[derive(Serialize)]
+struct BuildReport {
+    levels: u32,
+    classes: u64,
+    states: u64,
+    memory_bytes: u64,
+    exhausted: bool,
+    stopped: Option<&'static str>,
+}
+
+/// Runs the subcommand.
+pub fn run(args: &AtlasArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
+    match &args.command {
+        AtlasCommand::Build { output, cap, levels, width } => {
+            let width = if *width == 0 { u32::MAX } else { *width };
+            build(output, GrowOptions { cap: *cap as usize, width }, *levels, console, ctx)
+        }
+        AtlasCommand::Stats { file } => {
+            let read;
+            let atlas = match file {
+                Some(path) => {
+                    read = Atlas::read_path(path)?;
+                    &read
+                }
+                None => Atlas::embedded(),
+            };
+            stats(atlas, console)
+        }
+        AtlasCommand::Lookup { surface, atlas } => {
+            let read = atlas.as_deref().map(Atlas::read_path).transpose()?;
+            lookup(surface, read.as_ref().unwrap_or_else(|| Atlas::embedded()), console)
+        }
+        AtlasCommand::Prune { file, output, max_quads, max_hexes, width } => {
+            files::check_folder(output)?;
+            let atlas = Atlas::read_path(file)?;
+            let pruned = atlas.pruned(*width, |quads, hexes| quads <= *max_quads || hexes <= *max_hexes);
+            files::write_file(output, |out| pruned.write_packed(out))?;
+            let bytes = std::fs::metadata(output)?.len();
+            console.say(format!("{output}: {} of {} states, {bytes} bytes", pruned.n_states(), atlas.n_states()));
+            Ok(Exit::Done)
+        }
+    }
+}
+
+fn build(path: &Path, options: GrowOptions, levels: u32, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
+    let (mut log, mut growth) = GrowthLog::open(path, options)?;
+    if growth.level() > 1 {
+        console.say(format!("going on from level {} ({} states)", growth.level(), growth.n_states()));
+    }
+    let mut stopped = None;
+    while growth.level() < levels && !growth.is_exhausted() {
+        let start = Instant::now();
+        let report = growth.grow(ctx);
+        if let Some(stop) = report.stopped {
+            stopped = Some(stop);
+            break;
+        }
+        log.append(&growth, &report)?;
+        if console.verbose > 0 {
+            console.say(format!(
+                "level {:3}: {:9} flips, {:8} states kept, {:9} classes, {:9} states, {} thinned, {:.0} flips/s, {} MB",
+                report.level,
+                report.children,
+                report.kept,
+                report.classes,
+                report.states,
+                report.thinned,
+                report.children as f64 / start.elapsed().as_secs_f64(),
+                growth.memory() >> 20
+            ));
+        }
+    }
+    let report = BuildReport {
+        levels: growth.level(),
+        classes: growth.n_classes(),
+        states: growth.n_states(),
+        memory_bytes: growth.memory(),
+        exhausted: growth.is_exhausted(),
+        stopped: stopped.map(stop_word),
+    };
+    if console.json {
+        console.print_json(&report)?;
+    } else {
+        console.print(format!(
+            "{}: {} levels, {} classes, {} states{}",
+            path.display(),
+            report.levels,
+            report.classes,
+            report.states,
+            if report.exhausted { "; nothing is left to grow from" } else { "" }
+        ))?;
+    }
+    if stopped.is_some() {
+        console.say(format!("stopped; the same command goes on from level {}", report.levels));
+    }
+    Ok(Exit::of_stop(stopped.unwrap_or(StopReason::Finished), Exit::Done))
+}
+
+/// A stop reason as one word for JSON.
+pub fn stop_word(stop: StopReason) -> &'static str {
+    match stop {
+        StopReason::Finished => "finished",
+        StopReason::Cancelled => "cancelled",
+        StopReason::TimeLimit => "time-limit",
+        StopReason::MemoryLimit => "memory-limit",
+    }
+}
+
+#[derive(Serialize)]
+struct StatsRow {
+    quads: usize,
+    classes: usize,
+    fewest_hexes: u32,
+    most_hexes: u32,
+    mean_hexes: f64,
+}
+
+fn stats(atlas: &Atlas, console: &Console) -> anyhow::Result<Exit> {
+    let stats = atlas.stats();
+    let rows: Vec<StatsRow> = stats
+        .classes
+        .iter()
+        .map(|(&quads, c)| StatsRow {
+            quads,
+            classes: c.classes,
+            fewest_hexes: c.fewest,
+            most_hexes: c.most,
+            mean_hexes: c.hexes as f64 / c.classes as f64,
+        })
+        .collect();
+    if console.json {
+        console.print_json(&rows)?;
+        return Ok(Exit::Done);
+    }
+    console.print(format!("{} states, up to {} hexes", stats.states, stats.levels))?;
+    console.print("quads  classes  hexes: fewest  most   mean")?;
+    for row in rows {
+        console.print(format!(
+            "{:5} {:8} {:14} {:5} {:6.1}",
+            row.quads, row.classes, row.fewest_hexes, row.most_hexes, row.mean_hexes
+        ))?;
+    }
+    Ok(Exit::Done)
+}
+
+#[derive(Serialize)]
+struct LookupRow {
+    hexes: usize,
+    interior_vertices: u32,
+    blocked_pairs: u32,
+}
+
+fn lookup(surface: &str, atlas: &Atlas, console: &Console) -> anyhow::Result<Exit> {
+    let problem = files::load_problem(surface, None)?;
+    let Some((cavity, _)) = Cavity::from_surface(&problem.surface) else {
+        bail!("{surface} is not one sphere of at most {MAX_QUADS} quads; the atlas knows no other surfaces");
+    };
+    let rows: Vec<LookupRow> = atlas
+        .balls_for(&cavity)
+        .map(|ball| LookupRow {
+            hexes: ball.n_hexes(),
+            interior_vertices: ball.n_vertices - cavity.n_vertices() as u32,
+            blocked_pairs: ball.boundary.n_blocked(),
+        })
+        .collect();
+    if console.json {
+        console.print_json(&rows)?;
+    } else if rows.is_empty() {
+        console.say(format!("{surface}: not in the atlas, which proves nothing; try `hexfill fill`"));
+    } else {
+        for row in &rows {
+            console.print(format!(
+                "{} hexes, {} interior vertices, {} blocked pairs",
+                row.hexes, row.interior_vertices, row.blocked_pairs
+            ))?;
+        }
+    }
+    Ok(if rows.is_empty() { Exit::No } else { Exit::Done })
+}

@@ -1,0 +1,222 @@
+//! `hexfill info SURFACE|MESH`.
+
+use crate::console::Console;
+use crate::exit::Exit;
+use crate::files;
+use hexfill::io::{Format, MeshData};
+use hexfill::mesh::{HexMesh, QuadSurface, bipartition, chords, hex_signature, key, sheets, surface_automorphisms, surface_signature};
+use hexfill::{Problem, check_fillable};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// Flags of `info`.
+#[derive(clap::Args)]
+pub struct InfoArgs {
+    /// A surface or a mesh: a file, `-`, a catalogue name or a signature.
+    input: String,
+    /// Format of the input.
+    #[arg(long, value_name = "FORMAT", value_parser = files::parse_format)]
+    from: Option<Format>,
+}
+
+#[derive(Serialize)]
+struct SurfaceInfo {
+    kind: &'static str,
+    quads: usize,
+    vertices: usize,
+    edges: usize,
+    components: usize,
+    genus: u64,
+    euler: i64,
+    bipartite: bool,
+    odd_cycle: Option<Vec<u32>>,
+    fillable: bool,
+    why_not: Option<String>,
+    degrees: BTreeMap<u32, usize>,
+    chords: Vec<ChordInfo>,
+    key: String,
+    automorphisms: Option<usize>,
+    signature: Option<String>,
+}
+
+#[derive(Serialize)]
+struct ChordInfo {
+    quads: usize,
+    self_crossings: usize,
+}
+
+#[derive(Serialize)]
+struct MeshInfo {
+    kind: &'static str,
+    hexes: usize,
+    vertices: usize,
+    interior_vertices: usize,
+    boundary_quads: usize,
+    sheets: Vec<SheetInfo>,
+    signature: Option<String>,
+    boundary: Option<SurfaceInfo>,
+}
+
+#[derive(Serialize)]
+struct SheetInfo {
+    hexes: usize,
+    self_crossings: usize,
+    boundary_chords: usize,
+}
+
+/// Larger surfaces are not searched for symmetries, nor printed as a signature.
+const SIGNATURE_LIMIT: usize = 20_000;
+
+/// Describes a surface or a mesh.
+pub fn run(args: &InfoArgs, console: &Console) -> anyhow::Result<Exit> {
+    let problem = if hexfill::is_named(&args.input) {
+        files::load_problem(&args.input, None)?
+    } else {
+        let data = files::read_data(&args.input, args.from)?;
+        if !data.hexes.is_empty() {
+            return mesh_info(&data, console);
+        }
+        Problem::from_data(&args.input, &data)?
+    };
+    for note in &problem.notes {
+        console.note(note);
+    }
+    let info = describe(&problem.surface);
+    if console.json {
+        console.print_json(&info)?;
+    } else {
+        print_surface(&info, console)?;
+    }
+    Ok(Exit::Done)
+}
+
+fn describe(surface: &QuadSurface) -> SurfaceInfo {
+    let small = surface.n_quads() <= SIGNATURE_LIMIT;
+    let parts = bipartition(surface);
+    let refusal = check_fillable(surface).err().map(|e| e.to_string());
+    let mut degrees = BTreeMap::new();
+    for v in 0..surface.n_vertices() {
+        *degrees.entry(surface.degree(hexfill::mesh::VertexId::new(v))).or_insert(0) += 1;
+    }
+    let chords = chords(surface);
+    SurfaceInfo {
+        kind: "surface",
+        quads: surface.n_quads(),
+        vertices: surface.n_used_vertices(),
+        edges: surface.n_edges(),
+        components: surface.n_components(),
+        genus: surface.genus(),
+        euler: surface.euler_characteristic(),
+        bipartite: parts.is_ok(),
+        odd_cycle: parts.err().map(|c| c.vertices.iter().map(|v| v.0).collect()),
+        fillable: refusal.is_none(),
+        why_not: refusal,
+        degrees,
+        chords: chords
+            .iter()
+            .map(|c| ChordInfo { quads: c.length(), self_crossings: c.self_crossings.len() })
+            .collect(),
+        key: key(surface).to_string(),
+        automorphisms: (small && surface.n_components() == 1).then(|| surface_automorphisms(surface).len()),
+        signature: small.then(|| surface_signature(surface)),
+    }
+}
+
+fn print_surface(info: &SurfaceInfo, console: &Console) -> anyhow::Result<()> {
+    let shape = match (info.components, info.genus) {
+        (1, 0) => "a sphere".to_owned(),
+        (1, g) => format!("genus {g}"),
+        (c, g) => format!("{c} components, genus {g} in all"),
+    };
+    console.print(format!(
+        "closed quad surface, {shape}: {} quads, {} vertices, {} edges, Euler characteristic {}",
+        info.quads, info.vertices, info.edges, info.euler
+    ))?;
+    let degrees: Vec<String> = info.degrees.iter().map(|(d, n)| format!("{n} of degree {d}")).collect();
+    console.print(format!("vertices: {}", degrees.join(", ")))?;
+    let chords: Vec<String> = info
+        .chords
+        .iter()
+        .take(10)
+        .map(|c| match c.self_crossings {
+            0 => c.quads.to_string(),
+            k => format!("{} (crossing itself {k} times)", c.quads),
+        })
+        .collect();
+    let more = if info.chords.len() > 10 { ", ..." } else { "" };
+    console.print(format!("chords: {}, of {}{more} quads", info.chords.len(), chords.join(", ")))?;
+    let key = if info.key.len() > 400 { format!("{}...", &info.key[..400]) } else { info.key.clone() };
+    console.print(format!("key: {key}"))?;
+    console.print(match &info.odd_cycle {
+        None => "bipartite: yes".to_owned(),
+        Some(cycle) => {
+            let shown: Vec<String> = cycle.iter().take(30).map(|v| format!("v{v}")).collect();
+            let more = if cycle.len() > 30 { " ..." } else { "" };
+            format!("bipartite: no, odd cycle of {} edges: {}{more}", cycle.len(), shown.join(" "))
+        }
+    })?;
+    if let Some(n) = info.automorphisms {
+        console.print(format!("automorphisms: {n} (reflections included)"))?;
+    }
+    if let Some(signature) = info.signature.as_ref().filter(|s| s.len() <= 2000) {
+        console.print(format!("signature: {signature}"))?;
+    }
+    console.print(match &info.why_not {
+        Some(why) => format!("hex mesh: {why}"),
+        None if info.genus == 0 && info.components == 1 => {
+            "hex mesh: exists (an even, 3-connected quad sphere)".to_owned()
+        }
+        None if info.bipartite => "hex mesh: exists (even and bipartite, so no odd cycle bounds)".to_owned(),
+        None => "hex mesh: exists unless an odd cycle bounds a surface inside, which depends on the solid".to_owned(),
+    })
+}
+
+fn mesh_info(data: &MeshData, console: &Console) -> anyhow::Result<Exit> {
+    let highest = data.hexes.iter().flatten().max().map_or(0, |&v| v as usize + 1);
+    let mesh = HexMesh::try_new(data.points.len().max(highest), &data.hexes)?;
+    let quads: Vec<[u32; 4]> = mesh.boundary_quads().iter().map(|q| q.map(|v| v.0)).collect();
+    let boundary = QuadSurface::try_new(mesh.n_vertices(), &quads).ok();
+    let info = MeshInfo {
+        kind: "mesh",
+        hexes: mesh.n_hexes(),
+        vertices: mesh.used_vertices().iter().filter(|&&u| u).count(),
+        interior_vertices: mesh.n_interior_vertices(),
+        boundary_quads: quads.len(),
+        sheets: sheets(&mesh)
+            .iter()
+            .map(|s| SheetInfo {
+                hexes: s.n_hexes(),
+                self_crossings: s.self_crossings.len(),
+                boundary_chords: s.boundary.len(),
+            })
+            .collect(),
+        signature: (mesh.n_hexes() <= SIGNATURE_LIMIT).then(|| hex_signature(&mesh).ok()).flatten(),
+        boundary: boundary.as_ref().map(describe),
+    };
+    if console.json {
+        console.print_json(&info)?;
+        return Ok(Exit::Done);
+    }
+    console.print(format!(
+        "hex mesh: {} hexes, {} vertices ({} interior), {} boundary quads",
+        info.hexes, info.vertices, info.interior_vertices, info.boundary_quads
+    ))?;
+    console.print(format!("sheets: {}", info.sheets.len()))?;
+    for (i, sheet) in info.sheets.iter().take(20).enumerate() {
+        console.print(format!(
+            "  sheet {i}: {} hexes, {} self-crossings, {} boundary chords",
+            sheet.hexes, sheet.self_crossings, sheet.boundary_chords
+        ))?;
+    }
+    if let Some(signature) = info.signature.as_ref().filter(|s| s.len() <= 4000) {
+        console.print(format!("signature: {signature}"))?;
+    }
+    match &info.boundary {
+        Some(boundary) => {
+            console.print("boundary:")?;
+            print_surface(boundary, console)?;
+        }
+        None => console.print("boundary: not a closed manifold; see `hexfill check`")?,
+    }
+    Ok(Exit::Done)
+}

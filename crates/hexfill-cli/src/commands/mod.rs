@@ -1,0 +1,10 @@
+//! One file per subcommand: its flags and the glue to the libraries.
+
+pub mod atlas;
+pub mod catalog;
+pub mod check;
+pub mod completions;
+pub mod convert;
+pub mod fill;
+pub mod info;
+pub mod view;

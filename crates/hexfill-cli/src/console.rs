@@ -1,0 +1,152 @@
+//! What goes to the terminal: messages, errors, progress. A bar on a terminal, a plain line every few seconds otherwise.
+
+use crate::Common;
+use hexfill::Progress;
+use indicatif::{ProgressBar, ProgressStyle};
+use std::io::{IsTerminal, Write};
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
+
+/// When to use colours.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, clap::ValueEnum)]
+pub enum ColorWhen {
+    /// On a terminal, unless NO_COLOR is set.
+    Auto,
+    /// Always.
+    Always,
+    /// Never.
+    Never,
+}
+
+/// Where messages go.
+pub struct Console {
+    quiet: bool,
+    /// How much more to say (0, 1, ...).
+    pub verbose: u8,
+    /// Whether the report is wanted as JSON.
+    pub json: bool,
+    color: bool,
+    progress: Mutex<ProgressState>,
+}
+
+struct ProgressState {
+    bar: Option<ProgressBar>,
+    on_terminal: bool,
+    last_line: Instant,
+    started: Instant,
+}
+
+/// Time between two plain progress lines.
+const LINE_EVERY: Duration = Duration::from_secs(5);
+
+impl Console {
+    /// A console as the flags ask for.
+    pub fn new(common: &Common) -> Self {
+        let on_terminal = std::io::stderr().is_terminal();
+        let color = match common.color {
+            ColorWhen::Always => true,
+            ColorWhen::Never => false,
+            ColorWhen::Auto => on_terminal && std::env::var_os("NO_COLOR").is_none(),
+        };
+        let now = Instant::now();
+        let progress = ProgressState { bar: None, on_terminal, last_line: now, started: now };
+        Self {
+            quiet: common.quiet,
+            verbose: common.verbose,
+            json: common.json,
+            color,
+            progress: Mutex::new(progress),
+        }
+    }
+
+    /// A line for the user, on stderr.
+    pub fn say(&self, text: impl AsRef<str>) {
+        if !self.quiet {
+            self.finish_progress();
+            eprintln!("{}", text.as_ref());
+        }
+    }
+
+    /// A remark about the input or result, on stderr.
+    pub fn note(&self, text: impl AsRef<str>) {
+        self.say(format!("{} {}", self.paint("note:", "36"), text.as_ref()));
+    }
+
+    /// An error with its causes, on stderr, in one message.
+    pub fn error(&self, error: &anyhow::Error) {
+        self.finish_progress();
+        eprintln!("{} {error:#}", self.paint("error:", "1;31"));
+    }
+
+    fn paint(&self, text: &str, code: &str) -> String {
+        if self.color { format!("\x1b[{code}m{text}\x1b[0m") } else { text.to_owned() }
+    }
+
+    /// Prints data on stdout.
+    ///
+    /// # Errors
+    /// If stdout cannot be written.
+    pub fn print(&self, text: impl AsRef<str>) -> anyhow::Result<()> {
+        let mut out = std::io::stdout().lock();
+        out.write_all(text.as_ref().as_bytes())?;
+        out.write_all(b"\n")?;
+        out.flush()?;
+        Ok(())
+    }
+
+    /// Prints a value as JSON on stdout.
+    ///
+    /// # Errors
+    /// If stdout cannot be written.
+    pub fn print_json(&self, value: &impl serde::Serialize) -> anyhow::Result<()> {
+        self.print(serde_json::to_string_pretty(value)?)
+    }
+
+    /// Shows progress of long work.
+    pub fn progress(&self, p: &Progress) {
+        if self.quiet {
+            return;
+        }
+        let mut state = self.progress.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let elapsed = state.started.elapsed();
+        if state.on_terminal {
+            let bar = state.bar.get_or_insert_with(|| {
+                let bar = ProgressBar::new(0);
+                bar.set_style(bar_style(false));
+                bar
+            });
+            if let Some(total) = p.total {
+                bar.set_style(bar_style(true));
+                bar.set_length(total);
+            } else {
+                bar.set_style(bar_style(false));
+            }
+            bar.set_position(p.done);
+            bar.set_message(format!("{}: {}", p.stage, p.message));
+            if elapsed > Duration::from_millis(100) {
+                bar.tick();
+            }
+        } else if state.last_line.elapsed() >= LINE_EVERY {
+            state.last_line = Instant::now();
+            let of = p.total.map_or(String::new(), |t| format!(" of {t}"));
+            eprintln!("[{:6.1}s] {} {}{of}: {}", elapsed.as_secs_f64(), p.stage, p.done, p.message);
+        }
+    }
+
+    /// Clears the bar.
+    pub fn finish_progress(&self) {
+        let mut state = self.progress.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        if let Some(bar) = state.bar.take() {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+fn bar_style(with_total: bool) -> ProgressStyle {
+    let template = if with_total {
+        "{elapsed:>6} {bar:24} {pos}/{len} {per_sec} {wide_msg}"
+    } else {
+        "{elapsed:>6} {spinner} {pos} {wide_msg}"
+    };
+    ProgressStyle::with_template(template).expect("the template is well formed")
+}

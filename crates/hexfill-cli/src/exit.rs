@@ -1,0 +1,62 @@
+//! Exit codes, signals and the quiet end of a broken pipe.
+
+use hexfill::{FillError, StopReason};
+use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// How a command ended.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Exit {
+    /// Done and verified.
+    Done = 0,
+    /// Ran, and the answer is "no".
+    No = 1,
+    /// Bad usage or input.
+    Usage = 2,
+    /// Stopped by a limit or a signal.
+    Stopped = 3,
+    /// A defect of this program.
+    Internal = 70,
+}
+
+impl From<Exit> for ExitCode {
+    fn from(exit: Exit) -> Self {
+        Self::from(exit as u8)
+    }
+}
+
+impl Exit {
+    /// Done, or stopped if the work was.
+    pub fn of_stop(stop: StopReason, otherwise: Self) -> Self {
+        if stop == StopReason::Finished { otherwise } else { Self::Stopped }
+    }
+}
+
+/// The exit code of an error: bad input unless it says otherwise.
+pub fn code_of(error: &anyhow::Error) -> Exit {
+    match error.downcast_ref::<FillError>() {
+        Some(FillError::Refused { .. }) => Exit::Internal,
+        _ => Exit::Usage,
+    }
+}
+
+/// Whether the reader of our output went away.
+pub fn is_broken_pipe(error: &anyhow::Error) -> bool {
+    error.chain().any(|e| {
+        e.downcast_ref::<std::io::Error>().is_some_and(|e| e.kind() == std::io::ErrorKind::BrokenPipe)
+    })
+}
+
+/// The first SIGINT or SIGTERM asks the work to stop; the second ends the process at once.
+pub fn install_signal_handler() -> &'static AtomicBool {
+    static CANCEL: AtomicBool = AtomicBool::new(false);
+    let installed = ctrlc::set_handler(|| {
+        if CANCEL.swap(true, Ordering::Relaxed) {
+            std::process::exit(Exit::Stopped as i32);
+        }
+        eprintln!("hexfill: stopping; once more to quit at once");
+    });
+    // Without a handler the signals keep their default meaning: the process ends.
+    drop(installed);
+    &CANCEL
+}

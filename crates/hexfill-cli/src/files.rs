@@ -1,0 +1,119 @@
+//! Small parsers for flags, and reading and writing where `-` means stdin and stdout.
+
+use anyhow::{Context as _, Result, bail};
+use hexfill::Problem;
+use hexfill::io::{Format, MeshData};
+use std::path::Path;
+use std::time::Duration;
+
+/// `90`, `90s`, `1.5m`, `2h`.
+pub fn parse_duration(text: &str) -> Result<Duration, String> {
+    let (number, unit) = split_unit(text);
+    let seconds = match unit {
+        "" | "s" => 1.0,
+        "ms" => 1e-3,
+        "m" | "min" => 60.0,
+        "h" => 3600.0,
+        _ => return Err(format!("unknown unit `{unit}`; use s, m or h")),
+    };
+    let value: f64 = number.parse().map_err(|_| format!("`{text}` is no time; write 90, 90s, 10m or 2h"))?;
+    Duration::try_from_secs_f64(value * seconds).map_err(|e| e.to_string())
+}
+
+/// `1000000`, `800M`, `6G`, `6GiB`.
+pub fn parse_size(text: &str) -> Result<u64, String> {
+    let (number, unit) = split_unit(text);
+    let scale = match unit.to_ascii_uppercase().as_str() {
+        "" | "B" => 1u64,
+        "K" | "KB" | "KIB" => 1 << 10,
+        "M" | "MB" | "MIB" => 1 << 20,
+        "G" | "GB" | "GIB" => 1 << 30,
+        _ => return Err(format!("unknown unit `{unit}`; use K, M or G")),
+    };
+    let value: f64 = number.parse().map_err(|_| format!("`{text}` is no size; write bytes, 800M or 6G"))?;
+    if value.is_finite() && value >= 0.0 { Ok((value * scale as f64) as u64) } else { Err("size out of range".into()) }
+}
+
+fn split_unit(text: &str) -> (&str, &str) {
+    let at = text.find(|c: char| c.is_ascii_alphabetic()).unwrap_or(text.len());
+    (&text[..at], &text[at..])
+}
+
+/// `--from` and `--to`: a format by name.
+pub fn parse_format(text: &str) -> Result<Format, String> {
+    Format::from_name(text).map_err(|e| e.to_string())
+}
+
+/// What a file or stdin holds.
+pub fn read_data(input: &str, from: Option<Format>) -> Result<MeshData> {
+    if input == "-" {
+        let Some(format) = from else { bail!("reading stdin: name its format with --from") };
+        return Ok(hexfill::io::read_from(std::io::stdin().lock(), format, "stdin")?);
+    }
+    Ok(hexfill::io::read_path(Path::new(input), from)?)
+}
+
+/// The problem named by a file, stdin, a catalogue name or a signature.
+pub fn load_problem(input: &str, from: Option<Format>) -> Result<Problem> {
+    if input == "-" { Ok(Problem::from_data("stdin", &read_data(input, from)?)?) } else { Ok(Problem::load(input, from)?) }
+}
+
+/// Writes to a path (format by extension unless given) or, for `-`, to stdout.
+pub fn write_data(output: &str, to: Option<Format>, data: &MeshData) -> Result<()> {
+    if output == "-" {
+        let Some(format) = to else { bail!("writing stdout: name its format with --to") };
+        return Ok(hexfill::io::write_to(std::io::stdout().lock(), format, data)?);
+    }
+    Ok(hexfill::io::write_path(Path::new(output), to, data)?)
+}
+
+/// Refuses an output path before any work is done: unknown extension, missing folder.
+pub fn check_output(output: &str, to: Option<Format>) -> Result<()> {
+    if output == "-" {
+        return if to.is_some() { Ok(()) } else { bail!("writing stdout: name its format with --to") };
+    }
+    if to.is_none() {
+        Format::from_path(Path::new(output))?;
+    }
+    check_folder(output)
+}
+
+/// Refuses a path in a folder that does not exist.
+pub fn check_folder(output: &str) -> Result<()> {
+    let folder = Path::new(output).parent().filter(|p| !p.as_os_str().is_empty());
+    match folder {
+        Some(folder) if !folder.is_dir() => bail!("{output}: the folder {} does not exist; create it first", folder.display()),
+        _ => Ok(()),
+    }
+}
+
+/// Writes a text or binary file by way of a temporary one beside it.
+pub fn write_file(path: &str, write: impl FnOnce(&mut std::fs::File) -> std::io::Result<()>) -> Result<()> {
+    let target = Path::new(path);
+    let folder = target.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let mut file = tempfile::Builder::new().prefix(".hexfill-").tempfile_in(folder).with_context(|| path.to_owned())?;
+    write(file.as_file_mut()).with_context(|| path.to_owned())?;
+    let file = file.persist(target).with_context(|| path.to_owned())?;
+    #[cfg(unix)]
+    {
+        // Temporary files are private; a result is an ordinary file.
+        use std::os::unix::fs::PermissionsExt;
+        file.set_permissions(std::fs::Permissions::from_mode(0o644)).with_context(|| path.to_owned())?;
+    }
+    drop(file);
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_and_sizes_are_understood() {
+        assert_eq!(parse_duration("90").unwrap(), Duration::from_secs(90));
+        assert_eq!(parse_duration("1.5m").unwrap(), Duration::from_secs(90));
+        assert_eq!(parse_size("6G").unwrap(), 6 << 30);
+        assert!(parse_duration("soon").is_err() && parse_duration("5 parsecs").is_err() && parse_duration("-1").is_err());
+        assert!(parse_size("many").is_err() && parse_size("-1G").is_err());
+    }
+}

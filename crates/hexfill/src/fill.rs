@@ -1,0 +1,412 @@
+//! `fill`: from a problem to verified meshes. Picks the strategy, and lets nothing out that the judge refused.
+
+use crate::problem::Problem;
+use hexfill_check::{Judged, Level, judge};
+use hexfill_io::MeshData;
+use hexfill_mesh::{
+    Context, HexMesh, ImproperPair, Offenders, QuadSurface, StopReason, hex_signature, improper_pairs, sheets,
+};
+use hexfill_search::{
+    Atlas, AtlasError, Cavity, FillOptions as InwardOptions, GrowOptions, Growth, GrowthLog, MAX_CAP, MAX_QUADS,
+    fill_from_atlas,
+};
+use serde::Serialize;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// How to fill.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+#[non_exhaustive]
+pub enum Strategy {
+    /// Atlas, then inward flips; what they do not fill is constructed.
+    #[default]
+    Auto,
+    /// Atlas, inward flips, then growth towards the surface until it is reached or time is up.
+    Atlas,
+    /// Construction only.
+    Construct,
+}
+
+/// What to look for and where.
+#[derive(Clone, Debug)]
+pub struct FillOptions {
+    /// How to fill.
+    pub strategy: Strategy,
+    /// Most hexes a mesh may have.
+    pub max_hexes: u32,
+    /// How many non-isomorphic meshes to look for.
+    pub count: usize,
+    /// Look on for smaller meshes until the context stops the search.
+    pub improve: bool,
+    /// The atlas to use; the embedded one by default.
+    pub atlas: Option<Arc<Atlas>>,
+    /// Where growth towards the surface keeps its log, so that an interrupted run can go on.
+    pub growth_log: Option<PathBuf>,
+    /// Options of that growth.
+    pub growth: GrowOptions,
+    /// How long inward flips may take before the next strategy has its turn.
+    pub inward_limit: Duration,
+}
+
+impl Default for FillOptions {
+    fn default() -> Self {
+        Self {
+            strategy: Strategy::Auto,
+            max_hexes: u32::MAX,
+            count: 1,
+            improve: false,
+            atlas: None,
+            growth_log: None,
+            growth: GrowOptions::default(),
+            inward_limit: Duration::from_secs(10),
+        }
+    }
+}
+
+/// Which way a mesh was found.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Route {
+    /// Looked up in the atlas.
+    Atlas,
+    /// Hexes glued inward, the rest from the atlas.
+    InwardFlips,
+    /// Reached by growing an atlas towards it.
+    Growth,
+    /// Constructed.
+    Construction,
+}
+
+/// A verified mesh.
+#[derive(Clone, Debug)]
+pub struct Filled {
+    /// The mesh; the surface's vertices keep their ids, interior vertices follow.
+    pub mesh: HexMesh,
+    /// How it was found.
+    pub route: Route,
+    /// Start positions that come with a construction; absent for the other routes.
+    pub start: Option<Vec<[f64; 3]>>,
+}
+
+/// All that a fill brought.
+#[derive(Clone, Debug)]
+pub struct FillResult {
+    /// The meshes, fewest hexes first, pairwise not isomorphic.
+    pub meshes: Vec<Filled>,
+    /// Why the work ended.
+    pub stop: StopReason,
+    /// What was tried, in words, for the report.
+    pub tried: Vec<String>,
+}
+
+/// Why a surface has no hex mesh, or none was made.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum FillError {
+    /// The parity theorem forbids it.
+    #[error(
+        "the surface has {quads} quads, an odd number: no hex mesh exists, since every hex has six facets and interior quads pair up (Thurston 1993, Mitchell 1996); split one quad or merge two"
+    )]
+    OddQuads {
+        /// The number of quads.
+        quads: usize,
+    },
+    /// Two quads that cannot both be facets of a proper hex mesh.
+    #[error(
+        "no proper hex mesh exists: {} pairs of quads share more than one edge{three_connected}: {pairs}; refine the surface there", pairs.count
+    )]
+    Improper {
+        /// The pairs, with the vertices they share.
+        pairs: Offenders<ImproperPair>,
+        /// Remark for spheres.
+        three_connected: &'static str,
+    },
+    /// The strategy asked for cannot take this surface.
+    #[error("{what}; {remedy}")]
+    NotForStrategy {
+        /// What about the surface.
+        what: String,
+        /// What to do.
+        remedy: &'static str,
+    },
+    /// The construction refused.
+    #[error(transparent)]
+    Construct(#[from] hexfill_construct::ConstructError),
+    /// The atlas or the log of the growth cannot be used.
+    #[error(transparent)]
+    Atlas(#[from] AtlasError),
+    /// A mesh was made that the judge refused: a defect of this program.
+    #[error("internal error: the mesh made by {route:?} fails {rules}; please report this surface")]
+    Refused {
+        /// How it was made.
+        route: Route,
+        /// The rules it breaks.
+        rules: String,
+    },
+}
+
+/// Refuses surfaces that no proper hex mesh can have as boundary, naming the reason.
+///
+/// # Errors
+/// [`FillError::OddQuads`], [`FillError::Improper`].
+pub fn check_fillable(surface: &QuadSurface) -> Result<(), FillError> {
+    if !surface.n_quads().is_multiple_of(2) {
+        return Err(FillError::OddQuads { quads: surface.n_quads() });
+    }
+    let pairs = improper_pairs(surface);
+    if !pairs.is_empty() {
+        let three_connected = if surface.is_sphere() { " (the sphere is not 3-connected)" } else { "" };
+        return Err(FillError::Improper { pairs, three_connected });
+    }
+    Ok(())
+}
+
+/// Fills the surface of a problem. Every mesh returned has passed levels 1 to 3 of the judge, its boundary being the
+/// surface. An empty list means: none found within the bounds, which proves nothing.
+///
+/// # Errors
+/// [`FillError`].
+pub fn fill(problem: &Problem, options: &FillOptions, ctx: &Context<'_>) -> Result<FillResult, FillError> {
+    let surface = &problem.surface;
+    check_fillable(surface)?;
+    let small = surface.is_sphere() && surface.n_quads() <= MAX_QUADS;
+    if options.strategy == Strategy::Atlas && !small {
+        return Err(FillError::NotForStrategy {
+            what: format!(
+                "the atlas fills one sphere of at most {MAX_QUADS} quads; this surface has {} components, genus {}, {} quads",
+                surface.n_components(),
+                surface.genus(),
+                surface.n_quads()
+            ),
+            remedy: "use --strategy auto or construct",
+        });
+    }
+    let mut result = FillResult { meshes: Vec::new(), stop: StopReason::Finished, tried: Vec::new() };
+    if small && options.strategy != Strategy::Construct {
+        search(surface, options, ctx, &mut result)?;
+    }
+    if result.meshes.is_empty() && options.strategy != Strategy::Atlas && ctx.stop().is_none() {
+        construct(problem, options, ctx, &mut result)?;
+    }
+    if result.stop == StopReason::Finished {
+        result.stop = ctx.stop().unwrap_or(StopReason::Finished);
+    }
+    result.meshes.sort_by_key(|m| m.mesh.n_hexes());
+    Ok(result)
+}
+
+/// Atlas, inward flips and, if nothing else may follow, growth.
+fn search(
+    surface: &QuadSurface,
+    options: &FillOptions,
+    ctx: &Context<'_>,
+    result: &mut FillResult,
+) -> Result<(), FillError> {
+    let atlas = options.atlas.as_deref().unwrap_or_else(|| Atlas::embedded());
+    let inward = InwardOptions {
+        max_hexes: options.max_hexes,
+        // Several placements may be isomorphic as meshes: look for more than are asked for.
+        count: if options.count == 1 { 1 } else { 8 * options.count },
+        improve: options.improve,
+        ..InwardOptions::default()
+    };
+    let limited = if options.improve { *ctx } else { ctx.with_time_limit(options.inward_limit) };
+    let outcome = fill_from_atlas(surface, atlas, &inward, &limited).expect("the caller checked: a small sphere");
+    result.tried.push(format!("atlas of {} states, inward flips over {} cavities", atlas.n_states(), outcome.cavities));
+    for filling in outcome.fillings {
+        let route = if filling.glued == 0 { Route::Atlas } else { Route::InwardFlips };
+        accept(surface, filling.mesh, route, None, options, result)?;
+    }
+    if options.strategy == Strategy::Atlas && result.meshes.len() < options.count && ctx.stop().is_none() {
+        grow_towards(surface, options, ctx, result)?;
+    }
+    Ok(())
+}
+
+/// Grows an atlas from one cube until the surface is reached.
+fn grow_towards(
+    surface: &QuadSurface,
+    options: &FillOptions,
+    ctx: &Context<'_>,
+    result: &mut FillResult,
+) -> Result<(), FillError> {
+    let (cavity, ids) = Cavity::from_surface(surface).expect("the caller checked: a small sphere");
+    if surface.n_quads() > MAX_CAP {
+        result.tried.push(format!("no growth: the surface has more than {MAX_CAP} quads"));
+        return Ok(());
+    }
+    let grow_options = GrowOptions { cap: options.growth.cap.max(surface.n_quads()), ..options.growth };
+    let (mut log, mut growth) = match &options.growth_log {
+        Some(path) => {
+            let (log, growth) = GrowthLog::open(path, grow_options)?;
+            (Some(log), growth)
+        }
+        None => (None, Growth::new(grow_options)),
+    };
+    loop {
+        for ball in growth.balls_for(&cavity) {
+            if ball.n_hexes() as u64 > u64::from(options.max_hexes) {
+                continue;
+            }
+            if let Some((map, mirrored)) = ball.placements(&cavity).into_iter().next() {
+                let boundary: Vec<u32> = map.iter().map(|&v| ids[usize::from(v)]).collect();
+                let first = surface.n_vertices() as u32;
+                let (hexes, fresh) = ball.hexes_in(&boundary, mirrored, first);
+                let mesh = HexMesh::try_new((first + fresh) as usize, &hexes).expect("a ball's hexes glue properly");
+                accept(surface, mesh, Route::Growth, None, options, result)?;
+            }
+        }
+        if result.meshes.len() >= options.count || growth.is_exhausted() || growth.level() >= options.max_hexes {
+            break;
+        }
+        let report = growth.grow(ctx);
+        if let Some(stop) = report.stopped {
+            result.stop = stop;
+            break;
+        }
+        if let Some(log) = &mut log {
+            log.append(&growth, &report)?;
+        }
+        ctx.report("atlas level", u64::from(report.level), None, || {
+            format!("{} classes, {} states, {} MB", report.classes, report.states, growth.memory() >> 20)
+        });
+    }
+    result.tried.push(format!(
+        "growth with cap {} and width {} to {} hexes: {} classes",
+        grow_options.cap,
+        grow_options.width,
+        growth.level(),
+        growth.n_classes()
+    ));
+    Ok(())
+}
+
+/// The construction for everything else.
+fn construct(
+    problem: &Problem,
+    options: &FillOptions,
+    ctx: &Context<'_>,
+    result: &mut FillResult,
+) -> Result<(), FillError> {
+    let made = hexfill_construct::construct(
+        &problem.surface,
+        problem.points.as_deref(),
+        &hexfill_construct::Options::default(),
+        ctx,
+    )?;
+    result.tried.push(made.report.to_string());
+    if made.mesh.n_hexes() as u64 <= u64::from(options.max_hexes) {
+        accept(&problem.surface, made.mesh, Route::Construction, made.start, options, result)?;
+    }
+    Ok(())
+}
+
+/// Judges a mesh and keeps it, unless an isomorphic one is kept already or enough are.
+fn accept(
+    surface: &QuadSurface,
+    mesh: HexMesh,
+    route: Route,
+    start: Option<Vec<[f64; 3]>>,
+    options: &FillOptions,
+    result: &mut FillResult,
+) -> Result<(), FillError> {
+    if result.meshes.len() >= options.count {
+        return Ok(());
+    }
+    if options.count > 1 {
+        let name = hex_signature(&mesh).ok();
+        if name.is_some() && result.meshes.iter().any(|m| hex_signature(&m.mesh).ok() == name) {
+            return Ok(());
+        }
+    }
+    verify(surface, &mesh, route)?;
+    result.meshes.push(Filled { mesh, route, start });
+    Ok(())
+}
+
+/// Levels 1 to 3 of the judge against the surface.
+///
+/// # Errors
+/// [`FillError::Refused`].
+fn verify(surface: &QuadSurface, mesh: &HexMesh, route: Route) -> Result<(), FillError> {
+    let hexes = mesh.hexes_raw();
+    let quads: Vec<[u32; 4]> = surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
+    let judged = Judged::connectivity(mesh.n_vertices(), &hexes).with_surface(&quads);
+    let options = hexfill_check::Options::default().up_to(Level::L3).betti(false).quality(false);
+    let report = judge(&judged, &options, &Context::default());
+    if report.passed(Level::L3) {
+        Ok(())
+    } else {
+        Err(FillError::Refused { route, rules: report.broken_rules().join(", ") })
+    }
+}
+
+/// Numbers about a filling, for people and for JSON.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FillReport {
+    /// What the user called the surface.
+    pub surface: String,
+    /// Its quads.
+    pub quads: usize,
+    /// Hexes of the mesh.
+    pub hexes: usize,
+    /// Hexes per quad.
+    pub hexes_per_quad: f64,
+    /// Vertices that are not on the surface.
+    pub interior_vertices: usize,
+    /// Sheets of the mesh.
+    pub sheets: usize,
+    /// How it was found.
+    pub route: Route,
+    /// Canonical signature of the mesh, for meshes of at most 10,000 hexes.
+    pub signature: Option<String>,
+    /// What was tried.
+    pub tried: Vec<String>,
+}
+
+impl FillReport {
+    /// The report of one mesh of a result.
+    pub fn new(problem: &Problem, filled: &Filled, tried: &[String]) -> Self {
+        let (quads, hexes) = (problem.surface.n_quads(), filled.mesh.n_hexes());
+        Self {
+            surface: problem.name.clone(),
+            quads,
+            hexes,
+            hexes_per_quad: hexes as f64 / quads as f64,
+            interior_vertices: filled.mesh.n_interior_vertices(),
+            sheets: sheets(&filled.mesh).len(),
+            route: filled.route,
+            signature: (hexes <= 10_000).then(|| hex_signature(&filled.mesh).ok()).flatten(),
+            tried: tried.to_vec(),
+        }
+    }
+}
+
+/// The mesh as file data: the surface's points first, bit for bit, its quads in their order with their tags, then the hexes.
+/// `points` are the positions of all vertices, or `None` for connectivity alone.
+pub fn mesh_data(problem: &Problem, mesh: &HexMesh, points: Option<Vec<[f64; 3]>>) -> MeshData {
+    let mut data = problem.data();
+    data.hexes = mesh.hexes_raw();
+    data.has_coordinates = points.is_some();
+    data.points = points.unwrap_or_default();
+    if let Some(tags) = &mut data.point_tags {
+        tags.resize(mesh.n_vertices(), 0);
+    }
+    data
+}
+
+/// Positions of all vertices to start from: the surface's points bit for bit, interior vertices where the construction
+/// put them or at the means of their neighbours (Tutte). `None` if the surface has no positions.
+pub fn start_points(problem: &Problem, filled: &Filled) -> Option<Vec<[f64; 3]>> {
+    let points = problem.points.as_ref()?;
+    if let Some(start) = &filled.start {
+        return Some(start.clone());
+    }
+    Some(hexfill_embed::tutte_start(&filled.mesh, points).unwrap_or_else(|_| {
+        let mut all = points.clone();
+        all.resize(filled.mesh.n_vertices(), [0.0; 3]);
+        all
+    }))
+}

@@ -1,0 +1,190 @@
+//! [`Problem`]: a surface to fill, wherever it came from: a file, the catalogue, or a signature.
+
+use crate::catalog;
+use hexfill_io::{Format, MeshData, ReadError};
+use hexfill_mesh::{Offenders, QuadSurface, SignatureError, SurfaceError, parse_surface_signature};
+use std::path::Path;
+
+/// A surface with what is known about it besides its connectivity.
+#[derive(Clone, Debug)]
+pub struct Problem {
+    /// What the user called it.
+    pub name: String,
+    /// The surface; outward where positions tell.
+    pub surface: QuadSurface,
+    /// Position of each vertex, in the unit of the file, bit for bit; absent for signatures and connectivity-only input.
+    pub points: Option<Vec<[f64; 3]>>,
+    /// One tag per vertex, as in the file.
+    pub point_tags: Option<Vec<i64>>,
+    /// One tag per quad, as in the file.
+    pub quad_tags: Option<Vec<i64>>,
+    /// What was recognised, repaired or passed over, for the user.
+    pub notes: Vec<String>,
+}
+
+/// Why there is no problem to work on. All are the input's fault.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ProblemError {
+    /// The file cannot be read.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// The faces are no closed quad surface.
+    #[error("{name}: {source}")]
+    Surface {
+        /// The input.
+        name: String,
+        /// What is wrong.
+        source: SurfaceError,
+    },
+    /// The file has no faces at all.
+    #[error("{name} has no faces{}; give a closed surface of quads", if *hexes > 0 { format!(" ({hexes} hexes: is it a mesh? then use `hexfill check`)") } else { String::new() })]
+    NoFaces {
+        /// The input.
+        name: String,
+        /// Hexes in the file.
+        hexes: usize,
+    },
+    /// No such catalogue entry.
+    #[error("no problem is called {given}; known are {}", catalog::names().collect::<Vec<_>>().join(", "))]
+    UnknownName {
+        /// What was asked for.
+        given: String,
+    },
+    /// Not a signature.
+    #[error("{given}: {source}")]
+    Signature {
+        /// What was given.
+        given: String,
+        /// What is wrong.
+        source: SignatureError,
+    },
+    /// Vertices of one quad that lie on one spot are fine for topology, but non-finite positions are not.
+    #[error("{name}: {} points are not finite: {points}", points.count)]
+    NotFinite {
+        /// The input.
+        name: String,
+        /// The points.
+        points: Offenders<hexfill_mesh::VertexId>,
+    },
+}
+
+/// Whether a word names a problem without being a file: `:name` or a surface signature.
+pub fn is_named(spec: &str) -> bool {
+    spec.starts_with(':') || (spec.starts_with("Q1:") && !Path::new(spec).exists())
+}
+
+impl Problem {
+    /// Loads a problem from `:name`, a signature, or a path (format by extension unless given).
+    ///
+    /// # Errors
+    /// [`ProblemError`].
+    pub fn load(spec: &str, format: Option<Format>) -> Result<Self, ProblemError> {
+        if let Some(name) = spec.strip_prefix(':') {
+            let entry = catalog::find(name).ok_or_else(|| ProblemError::UnknownName { given: spec.to_owned() })?;
+            return Self::from_data(spec, &entry.data());
+        }
+        if is_named(spec) {
+            let surface = parse_surface_signature(spec)
+                .map_err(|source| ProblemError::Signature { given: spec.to_owned(), source })?;
+            return Ok(Self::from_surface(spec, surface));
+        }
+        Self::from_data(spec, &hexfill_io::read_path(Path::new(spec), format)?)
+    }
+
+    /// A problem without positions.
+    pub fn from_surface(name: &str, surface: QuadSurface) -> Self {
+        Self { name: name.to_owned(), surface, points: None, point_tags: None, quad_tags: None, notes: Vec::new() }
+    }
+
+    /// A problem from what a file holds: its faces, which must be quads and close up.
+    ///
+    /// # Errors
+    /// [`ProblemError`].
+    pub fn from_data(name: &str, data: &MeshData) -> Result<Self, ProblemError> {
+        let surface_error = |source| ProblemError::Surface { name: name.to_owned(), source };
+        if !data.other_faces.is_empty() {
+            let offenders = data
+                .other_faces
+                .iter()
+                .map(|f| hexfill_mesh::FaceSides { face: f.position, sides: f.vertices.len() })
+                .collect();
+            return Err(surface_error(SurfaceError::NotQuads { offenders }));
+        }
+        if data.quads.is_empty() {
+            return Err(ProblemError::NoFaces { name: name.to_owned(), hexes: data.hexes.len() });
+        }
+        let n_vertices = if data.has_coordinates {
+            data.points.len()
+        } else {
+            data.quads.iter().flatten().map(|&v| v as usize + 1).max().unwrap_or(0)
+        };
+        let mut surface = QuadSurface::try_new(n_vertices, &data.quads).map_err(surface_error)?;
+        let mut notes = data.notes.clone();
+        if !data.hexes.is_empty() {
+            notes.push(format!("{} hexes of the file are not used: only its faces are filled", data.hexes.len()));
+        }
+        let unused = n_vertices - surface.n_used_vertices();
+        if unused > 0 {
+            notes.push(format!("{unused} points belong to no quad; they are kept"));
+        }
+        if !surface.reversed().is_empty() {
+            notes.push(format!("{} quads were turned to agree with their neighbours", surface.reversed().len()));
+        }
+        let points = data.has_coordinates.then(|| data.points.clone());
+        if let Some(points) = &points {
+            let bad: Offenders<_> = points
+                .iter()
+                .enumerate()
+                .filter(|(_, p)| !p.iter().all(|x| x.is_finite()))
+                .map(|(v, _)| hexfill_mesh::VertexId::new(v))
+                .collect();
+            if !bad.is_empty() {
+                return Err(ProblemError::NotFinite { name: name.to_owned(), points: bad });
+            }
+            if surface.n_components() == 1 && enclosed_volume(&surface, points) < 0.0 {
+                surface = surface.inverted();
+                notes.push("the quads faced inward; they were turned outward".to_owned());
+            }
+        }
+        Ok(Self {
+            name: name.to_owned(),
+            surface,
+            points,
+            point_tags: data.point_tags.clone(),
+            quad_tags: data.quad_tags.clone(),
+            notes,
+        })
+    }
+
+    /// The surface as file data: the quads in the order of the input.
+    pub fn data(&self) -> MeshData {
+        let quads = self.surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
+        let mut data = MeshData::from_quads(self.points.clone().unwrap_or_default(), quads);
+        data.has_coordinates = self.points.is_some();
+        data.point_tags.clone_from(&self.point_tags);
+        data.quad_tags.clone_from(&self.quad_tags);
+        data
+    }
+}
+
+/// Six times the volume enclosed by the surface, its quads cut along both diagonals in turn; positive if outward.
+/// Only the sign is used. Positions are scaled first, so that no finite input overflows.
+fn enclosed_volume(surface: &QuadSurface, points: &[[f64; 3]]) -> f64 {
+    let largest = points.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
+    let scale = if largest > 0.0 { largest } else { 1.0 };
+    let at = |v: hexfill_mesh::VertexId| points[v.index()].map(|x| x / scale);
+    let origin = at(surface.quads()[0][0]);
+    let det = |a: [f64; 3], b: [f64; 3], c: [f64; 3]| {
+        let [a, b, c] = [a, b, c].map(|p| [p[0] - origin[0], p[1] - origin[1], p[2] - origin[2]]);
+        a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0])
+    };
+    surface
+        .quads()
+        .iter()
+        .map(|q| {
+            let [a, b, c, d] = q.map(at);
+            det(a, b, c) + det(a, c, d) + det(a, b, d) + det(b, c, d)
+        })
+        .sum()
+}
