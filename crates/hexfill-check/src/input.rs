@@ -63,11 +63,20 @@ pub struct Options {
     pub betti: bool,
     /// Whether to compute quality numbers (scaled Jacobian and others) where positions are given.
     pub quality: bool,
+    /// Whether to test that the boundary does not touch or cross itself, so that the mesh does not overlap. Off by default.
+    pub overlap: bool,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { up_to: Level::L5, rules: Rules::Strict, parts: Parts::AsSurface, betti: true, quality: true }
+        Self {
+            up_to: Level::L5,
+            rules: Rules::Strict,
+            parts: Parts::AsSurface,
+            betti: true,
+            quality: true,
+            overlap: false,
+        }
     }
 }
 
@@ -100,5 +109,11 @@ impl Options {
     #[must_use]
     pub fn quality(self, quality: bool) -> Self {
         Self { quality, ..self }
+    }
+
+    /// These options with or without the overlap test.
+    #[must_use]
+    pub fn overlap(self, overlap: bool) -> Self {
+        Self { overlap, ..self }
     }
 }

@@ -1,5 +1,6 @@
 //! [`judge`]: every level in turn, and the report.
 
+use crate::geometry::overlap::overlap;
 use crate::geometry::positions::{judge_jacobians, judge_positions};
 use crate::geometry::quality::measure;
 use crate::geometry::volume::enclosed;
@@ -143,6 +144,13 @@ impl Run<'_> {
         if self.options.quality {
             let valid = geometry.certified == hexes.len() as u64;
             geometry.quality = measure(hexes, points, enclosed(boundary, points), valid, self.ctx);
+        }
+        if self.options.overlap {
+            let whole = geometry.certified == hexes.len() as u64
+                && self.facts.parts == Some(1)
+                && !self.findings.breaks_level(Level::L2)
+                && !self.findings.breaks_level(Level::L3);
+            geometry.overlap = overlap(boundary, points, whole, self.ctx);
         }
         self.geometry = Some(geometry);
         Ok(())

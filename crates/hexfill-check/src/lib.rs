@@ -24,6 +24,7 @@ mod rule;
 mod topology;
 
 pub use certificate::{Certificate, CertificateError, certificate_of, certify, verify_certificate};
+pub use geometry::overlap::Overlap;
 pub use geometry::quality::{CellQuality, Quality, WorstCell, cell_quality, write_cell_csv};
 pub use input::{Judged, Options, Parts};
 pub use judge::judge;

@@ -1,5 +1,6 @@
 //! What the judge says: which level passed, which rule fails where, and facts about the mesh.
 
+use crate::geometry::overlap::Overlap;
 use crate::geometry::quality::Quality;
 use crate::rule::{Level, Rule, Rules};
 use hexfill_mesh::{HexId, QuadId, VertexId};
@@ -203,6 +204,8 @@ pub struct Geometry {
     pub undecided: u64,
     /// Quality numbers; absent if not asked for.
     pub quality: Option<Quality>,
+    /// Whether the mesh overlaps itself; absent if not asked for.
+    pub overlap: Option<Overlap>,
 }
 
 impl fmt::Display for Geometry {
@@ -212,6 +215,13 @@ impl fmt::Display for Geometry {
             "det J > 0 certified in {} hexes, not positive in {}, undecided in {}",
             self.certified, self.not_positive, self.undecided
         )?;
+        if let Some(o) = &self.overlap {
+            let verdict = if o.injective { "proved that the mesh does not overlap" } else { "overlap is not excluded" };
+            writeln!(f, "{verdict}: {} of {} near pairs of boundary quads not separated", o.not_separated, o.pairs)?;
+            for [a, b] in &o.first {
+                writeln!(f, "   {} and {}", Offender::at(&[], a), Offender::at(&[], b))?;
+            }
+        }
         let Some(q) = &self.quality else { return Ok(()) };
         writeln!(
             f,

@@ -314,3 +314,47 @@ fn a_sheared_box_has_the_scaled_jacobian_of_its_angle() {
     assert!((q.max_condition - 4.0 / 3.0).abs() < 1e-14);
     assert!((q.max_edge_ratio - 2f64.sqrt()).abs() < 1e-15);
 }
+
+#[test]
+fn overlap_is_excluded_where_it_is_and_only_there() {
+    let run = |s: &Sample, points: &[[f64; 3]]| {
+        let input = s.judged().with_points(points);
+        let report = judge(&input, &Options::default().overlap(true), &Context::default());
+        assert!(report.passed(Level::L5), "{report}");
+        report.geometry.unwrap().overlap.unwrap()
+    };
+    // A block with moved vertices, and one as it is (coplanar neighbours).
+    let size = [5, 4, 3];
+    let (s, mut points) = (grid(size), grid_points(size));
+    let found = run(&s, &points);
+    assert!(found.injective && found.pairs > 100, "{found:?}");
+    let mut random = Random(3);
+    for p in &mut points {
+        *p = p.map(|x| x + 0.3 * (random.unit() - 0.5));
+    }
+    let found = run(&s, &points);
+    assert!(found.injective, "{found:?}");
+    // A bar bent into a ring: apart by a little, and over its own start by a little.
+    let n = 40;
+    let bar = grid([n, 1, 1]);
+    let bent = |turn: f64| -> Vec<[f64; 3]> {
+        grid_points([n, 1, 1])
+            .iter()
+            .map(|p| {
+                let (angle, radius) = (turn * p[0] / n as f64, 5.0 - p[1]);
+                [radius * angle.cos(), radius * angle.sin(), p[2]]
+            })
+            .collect()
+    };
+    let full = 2.0 * std::f64::consts::PI;
+    let mirrored = |points: Vec<[f64; 3]>| points.into_iter().map(|p| [p[0], p[1], -p[2]]).collect::<Vec<_>>();
+    let positive = |points: Vec<[f64; 3]>| {
+        let input = bar.judged().with_points(&points);
+        let ok = judge(&input, &Options::default(), &Context::default()).passed(Level::L5);
+        if ok { points } else { mirrored(points) }
+    };
+    let found = run(&bar, &positive(bent(full - 0.02)));
+    assert!(found.injective, "{found:?}");
+    let found = run(&bar, &positive(bent(full + 0.05)));
+    assert!(!found.injective && found.not_separated > 0 && !found.first.is_empty(), "{found:?}");
+}

@@ -239,6 +239,68 @@ proptest! {
         prop_assert_eq!(report.facts.euler, Some(euler));
     }
 
+    /// Links of random subsets of a grid, against octants: round a grid vertex the link is a disk or sphere iff the occupied
+    /// octants and the empty ones are each connected through faces and no axis has a chequered pattern.
+    #[test]
+    fn links_of_random_subsets(seed in 1u64..u64::MAX, keep in 2usize..9) {
+        let n = 4usize;
+        let mut random = Random(seed);
+        let full = grid([n, n, n]);
+        let taken: Vec<bool> = (0..n * n * n).map(|_| random.below(10) < keep).collect();
+        let hexes: Vec<[u32; 8]> = full.hexes.iter().zip(&taken).filter(|x| *x.1).map(|x| *x.0).collect();
+        prop_assume!(!hexes.is_empty());
+        let occupied = |x: i32, y: i32, z: i32| {
+            let inside = [x, y, z].iter().all(|c| (0..n as i32).contains(c));
+            inside && taken[(x + n as i32 * (y + n as i32 * z)) as usize]
+        };
+        let (mut pinched_ends, mut split, mut disks) = (0u64, 0u64, 0u64);
+        for v in 0..full.n {
+            let at = [v % (n + 1), v / (n + 1) % (n + 1), v / (n + 1) / (n + 1)].map(|c| c as i32);
+            let octants: Vec<bool> = (0..8)
+                .map(|o| occupied(at[0] - 1 + (o & 1), at[1] - 1 + (o >> 1 & 1), at[2] - 1 + (o >> 2)))
+                .collect();
+            // Each of the six half-axes: the four octants round it, in order.
+            let mut chequered = 0;
+            for axis in 0..3 {
+                for side in 0..2 {
+                    let bit = |a: usize, b: usize| side << axis | a << ((axis + 1) % 3) | b << ((axis + 2) % 3);
+                    let round = [bit(0, 0), bit(1, 0), bit(1, 1), bit(0, 1)].map(|o| octants[o]);
+                    chequered += u64::from(round[0] == round[2] && round[1] == round[3] && round[0] != round[1]);
+                }
+            }
+            pinched_ends += chequered;
+            let pieces = |value: bool, corners: bool| {
+                let mut left: BTreeSet<usize> = (0..8).filter(|&o| octants[o] == value).collect();
+                let mut count = 0;
+                while let Some(first) = left.pop_first() {
+                    count += 1;
+                    let mut stack = vec![first];
+                    while let Some(o) = stack.pop() {
+                        let near: Vec<usize> = left.iter().copied().filter(|&p| {
+                            let apart = (o ^ p).count_ones();
+                            apart == 1 || (corners && apart == 2)
+                        }).collect();
+                        near.iter().for_each(|p| { left.remove(p); });
+                        stack.extend(near);
+                    }
+                }
+                count
+            };
+            // Octants that share only an edge are still joined in the link, through the pinched vertex.
+            if pieces(true, true) > 1 {
+                split += 1;
+            } else if chequered == 0 && pieces(true, false) == 1 && pieces(false, false) > 1 {
+                disks += 1;
+            }
+        }
+        let report = connectivity(full.n, &hexes);
+        let count = |rule| report.failure(rule).map_or(0, |f| f.count);
+        prop_assert_eq!(2 * count(Rule::EdgePinched), pinched_ends, "{}", &report);
+        prop_assert_eq!(count(Rule::VertexPinched), split, "{}", &report);
+        prop_assert_eq!(count(Rule::VertexLinkNotDisk), disks, "{}", &report);
+        prop_assert_eq!(count(Rule::VertexLinkNotSphere), 0);
+    }
+
     /// Relabelling vertices, turning hexes' frames and permuting hexes change neither verdict nor facts.
     #[test]
     fn names_and_orders_do_not_matter(which in 0usize..14, seed in 1u64..u64::MAX, spoil in 0usize..4) {

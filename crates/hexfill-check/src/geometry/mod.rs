@@ -6,6 +6,7 @@
 
 pub(crate) mod bernstein;
 pub(crate) mod exact;
+pub(crate) mod overlap;
 pub(crate) mod positions;
 pub(crate) mod positivity;
 pub(crate) mod quality;

@@ -20,7 +20,7 @@ use rayon::prelude::*;
 /// Tasks listed between two steps of the sequential union-find.
 const BATCH: usize = 64;
 /// Most edge visits the matrix may cost before the answer is "not computed".
-const MATRIX_WORK: u64 = 20_000_000_000;
+const MATRIX_WORK: u64 = 5_000_000_000;
 
 /// What the reduction found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
