@@ -50,13 +50,7 @@ impl Console {
         };
         let now = Instant::now();
         let progress = ProgressState { bar: None, on_terminal, last_line: now, started: now };
-        Self {
-            quiet: common.quiet,
-            verbose: common.verbose,
-            json: common.json,
-            color,
-            progress: Mutex::new(progress),
-        }
+        Self { quiet: common.quiet, verbose: common.verbose, json: common.json, color, progress: Mutex::new(progress) }
     }
 
     /// A line for the user, on stderr.

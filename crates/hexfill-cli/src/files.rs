@@ -55,7 +55,11 @@ pub fn read_data(input: &str, from: Option<Format>) -> Result<MeshData> {
 
 /// The problem named by a file, stdin, a catalogue name or a signature.
 pub fn load_problem(input: &str, from: Option<Format>) -> Result<Problem> {
-    if input == "-" { Ok(Problem::from_data("stdin", &read_data(input, from)?)?) } else { Ok(Problem::load(input, from)?) }
+    if input == "-" {
+        Ok(Problem::from_data("stdin", &read_data(input, from)?)?)
+    } else {
+        Ok(Problem::load(input, from)?)
+    }
 }
 
 /// Writes to a path (format by extension unless given) or, for `-`, to stdout.
@@ -82,7 +86,9 @@ pub fn check_output(output: &str, to: Option<Format>) -> Result<()> {
 pub fn check_folder(output: &str) -> Result<()> {
     let folder = Path::new(output).parent().filter(|p| !p.as_os_str().is_empty());
     match folder {
-        Some(folder) if !folder.is_dir() => bail!("{output}: the folder {} does not exist; create it first", folder.display()),
+        Some(folder) if !folder.is_dir() => {
+            bail!("{output}: the folder {} does not exist; create it first", folder.display())
+        }
         _ => Ok(()),
     }
 }
@@ -113,7 +119,9 @@ mod tests {
         assert_eq!(parse_duration("90").unwrap(), Duration::from_secs(90));
         assert_eq!(parse_duration("1.5m").unwrap(), Duration::from_secs(90));
         assert_eq!(parse_size("6G").unwrap(), 6 << 30);
-        assert!(parse_duration("soon").is_err() && parse_duration("5 parsecs").is_err() && parse_duration("-1").is_err());
+        assert!(
+            parse_duration("soon").is_err() && parse_duration("5 parsecs").is_err() && parse_duration("-1").is_err()
+        );
         assert!(parse_size("many").is_err() && parse_size("-1G").is_err());
     }
 }

@@ -77,6 +77,8 @@ enum Command {
     Catalog(commands::catalog::CatalogArgs),
     /// Build, inspect and query atlases of smallest known fillings.
     Atlas(commands::atlas::AtlasArgs),
+    /// Enumerate every hex mesh of n cubes, without isomorphic copies.
+    Enumerate(commands::enumerate::EnumerateArgs),
     /// Print shell completions.
     Completions(commands::completions::CompletionsArgs),
 }
@@ -119,6 +121,7 @@ fn main() -> ExitCode {
         Command::View(args) => commands::view::run(args, &console),
         Command::Catalog(args) => commands::catalog::run(args, &console),
         Command::Atlas(args) => commands::atlas::run(args, &console, &ctx),
+        Command::Enumerate(args) => commands::enumerate::run(args, rayon::current_num_threads(), &console, &ctx),
         Command::Completions(args) => commands::completions::run(args),
     };
     console.finish_progress();

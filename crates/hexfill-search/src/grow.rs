@@ -225,11 +225,6 @@ impl Growth {
         (self.states.capacity() * per_state + tables + self.frontier.capacity() * size_of::<FrontierState>()) as u64
     }
 
-    /// Number of hexes of a state.
-    pub(crate) fn hexes_of(&self, state: u32) -> u32 {
-        self.level_starts.partition_point(|&first| first <= state) as u32
-    }
-
     /// The states of a class, newest first.
     pub(crate) fn states_of(&self, class: ClassHash) -> impl Iterator<Item = u32> + '_ {
         let mut at = self.newest[shard_of(class)].get(&class).copied();

@@ -396,17 +396,3 @@ pub fn mesh_data(problem: &Problem, mesh: &HexMesh, points: Option<Vec<[f64; 3]>
     }
     data
 }
-
-/// Positions of all vertices to start from: the surface's points bit for bit, interior vertices where the construction
-/// put them or at the means of their neighbours (Tutte). `None` if the surface has no positions.
-pub fn start_points(problem: &Problem, filled: &Filled) -> Option<Vec<[f64; 3]>> {
-    let points = problem.points.as_ref()?;
-    if let Some(start) = &filled.start {
-        return Some(start.clone());
-    }
-    Some(hexfill_embed::tutte_start(&filled.mesh, points).unwrap_or_else(|_| {
-        let mut all = points.clone();
-        all.resize(filled.mesh.n_vertices(), [0.0; 3]);
-        all
-    }))
-}

@@ -14,11 +14,13 @@
 
 pub mod catalog;
 mod fill;
+mod geometry;
 mod problem;
 
 pub use fill::{
-    FillError, FillOptions, FillReport, FillResult, Filled, Route, Strategy, check_fillable, fill, mesh_data, start_points,
+    FillError, FillOptions, FillReport, FillResult, Filled, Route, Strategy, check_fillable, fill, mesh_data,
 };
+pub use geometry::{GeometryReport, Placed, boundary_points, place};
 pub use hexfill_mesh::{Context, Progress, StopReason};
 pub use problem::{Problem, ProblemError, is_named};
 pub use {

@@ -5,9 +5,9 @@ use crate::exit::Exit;
 use anyhow::{Context as _, bail};
 use hexfill::Context;
 use hexfill::enumerate::{
-    Boundary, Chunk, Code, Complex, EnumerateError, Filter, Found, Header, LevelOptions, ListFormat, Params, Plan, Rule,
-    Selection, Tally, Target, Wanted, all_levels, canonical, chunks_of_part, default_chunks, histograms, line, merge,
-    parse_range, read_ledgers, run_checkpointed, run_in_order, shape, strict_violations, table, weill_order,
+    Boundary, Chunk, Code, Complex, EnumerateError, Filter, Found, Header, LevelOptions, ListFormat, Params, Plan,
+    Rule, Selection, Tally, Target, Wanted, all_levels, canonical, chunks_of_part, default_chunks, histograms, line,
+    merge, parse_range, read_ledgers, run_checkpointed, run_in_order, shape, strict_violations, table, weill_order,
 };
 use serde_json::json;
 use std::io::Write;
@@ -156,7 +156,13 @@ struct Output {
 }
 
 impl Output {
-    fn open(file: Option<&PathBuf>, wanted: bool, format: ListFormat, rule: Rule, mirror: Mirror) -> anyhow::Result<Self> {
+    fn open(
+        file: Option<&PathBuf>,
+        wanted: bool,
+        format: ListFormat,
+        rule: Rule,
+        mirror: Mirror,
+    ) -> anyhow::Result<Self> {
         let to: Option<Box<dyn Write + Send>> = match file {
             _ if !wanted => None,
             Some(path) => {
@@ -222,16 +228,13 @@ fn enumerate(args: &EnumerateArgs, threads: usize, console: &Console, ctx: &Cont
         engine => engine,
     };
     if engine == Engine::Level && in_chunks {
-        bail!("the level engine does not work in chunks: leave out RES/MOD, --checkpoint and --chunks, or use --engine augment");
+        bail!(
+            "the level engine does not work in chunks: leave out RES/MOD, --checkpoint and --chunks, or use --engine augment"
+        );
     }
     let options = LevelOptions { threads, narrow_hashes: args.narrow_hashes };
-    let mut output = Output::open(
-        args.output.as_ref(),
-        list && args.checkpoint.is_none(),
-        args.format,
-        params.rule,
-        args.mirror,
-    )?;
+    let mut output =
+        Output::open(args.output.as_ref(), list && args.checkpoint.is_none(), args.format, params.rule, args.mirror)?;
     let mut levels: Vec<(usize, Tally)> = Vec::new();
     let mut found = Found::default();
     if engine == Engine::Level {
@@ -277,7 +280,9 @@ fn enumerate(args: &EnumerateArgs, threads: usize, console: &Console, ctx: &Cont
     }
     output.finish()?;
     report(&params, &levels, &targets, &found, args.count_only, console)?;
-    let objects = levels.last().map_or(0, |(_, t)| if args.mirror == Mirror::Distinct { t.classes + t.chiral } else { t.classes });
+    let objects = levels
+        .last()
+        .map_or(0, |(_, t)| if args.mirror == Mirror::Distinct { t.classes + t.chiral } else { t.classes });
     console.say(format!(">Z {objects} meshes generated in {:.2} sec", started.elapsed().as_secs_f64()));
     Ok(Exit::Done)
 }
@@ -413,8 +418,7 @@ fn show(what: &str, console: &Console) -> anyhow::Result<Exit> {
     }
     let complex = match what.parse::<Code>() {
         Ok(code) => code.decode()?,
-        Err(_) => parse_cubes(what)
-            .with_context(|| format!("{what:?} is no folder, no code and no list of cubes"))?,
+        Err(_) => parse_cubes(what).with_context(|| format!("{what:?} is no folder, no code and no list of cubes"))?,
     };
     let labelling = canonical(&complex);
     let boundary = Boundary::of(&complex);

@@ -1,17 +1,17 @@
 //! `hexfill fill SURFACE -o MESH`: the main job.
 
-use crate::commands::view::write_view;
+use crate::commands::view::Shown;
 use crate::console::Console;
 use crate::exit::Exit;
 use crate::files;
 use anyhow::bail;
 use hexfill::io::Format;
 use hexfill::search::{Atlas, GrowOptions};
-use hexfill::{Context, FillOptions, FillReport, StopReason, Strategy};
+use hexfill::{Context, FillOptions, FillReport, Filled, GeometryReport, Placed, Problem, StopReason, Strategy};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// Flags of `fill`.
 #[derive(clap::Args)]
@@ -55,6 +55,18 @@ pub struct FillArgs {
     /// Most quads a ball may have while growing towards the surface.
     #[arg(long, default_value_t = 24, value_name = "N")]
     cap: usize,
+    /// How long inward flips may take before the next strategy has its turn.
+    #[arg(long, default_value = "10s", value_name = "TIME", value_parser = files::parse_duration)]
+    inward_limit: Duration,
+    /// Do not embed: interior vertices get start positions, and geometry is not judged.
+    #[arg(long)]
+    no_embed: bool,
+    /// How long the embedding of one mesh may take.
+    #[arg(long, default_value = "60s", value_name = "TIME", value_parser = files::parse_duration)]
+    embed_limit: Duration,
+    /// Write nothing unless det J > 0 is certified in every hex.
+    #[arg(long, conflicts_with = "no_embed")]
+    require_valid: bool,
     /// States kept per class while growing towards the surface.
     #[arg(long, default_value_t = 1, value_name = "N")]
     width: u32,
@@ -71,9 +83,17 @@ enum StrategyArg {
 }
 
 #[derive(Serialize)]
-struct Output {
+struct MeshOutput {
+    #[serde(flatten)]
+    report: FillReport,
+    /// Absent without positions.
+    geometry: Option<GeometryReport>,
     files: Vec<String>,
-    meshes: Vec<FillReport>,
+}
+
+#[derive(Serialize)]
+struct Output {
+    meshes: Vec<MeshOutput>,
     stopped: &'static str,
     seconds: f64,
     notes: Vec<String>,
@@ -104,6 +124,7 @@ pub fn run(args: &FillArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Res
         improve: args.improve,
         atlas: args.atlas.as_deref().map(Atlas::read_path).transpose()?.map(Arc::new),
         growth_log: args.growth_log.clone().or_else(|| own_log.clone()),
+        inward_limit: args.inward_limit,
         growth: GrowOptions { cap: args.cap, width: args.width.max(1) },
         ..FillOptions::default()
     };
@@ -111,7 +132,6 @@ pub fn run(args: &FillArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Res
     if result.meshes.is_empty() {
         if console.json {
             console.print_json(&Output {
-                files: Vec::new(),
                 meshes: Vec::new(),
                 stopped: crate::commands::atlas::stop_word(result.stop),
                 seconds: start.elapsed().as_secs_f64(),
@@ -134,61 +154,125 @@ pub fn run(args: &FillArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Res
     if let Some(log) = own_log.filter(|log| log.exists()) {
         std::fs::remove_file(log)?;
     }
+    let boundary = hexfill::boundary_points(&problem);
+    if problem.points.is_none() && boundary.is_some() {
+        console.note("the surface has no coordinates; those of its canonical polyhedron are used");
+    }
     let mut output = Output {
-        files: Vec::new(),
         meshes: Vec::new(),
         stopped: crate::commands::atlas::stop_word(result.stop),
         seconds: 0.0,
         notes: problem.notes.clone(),
     };
+    let mut all_valid = true;
     for (i, filled) in result.meshes.iter().enumerate() {
         let report = FillReport::new(&problem, filled, &result.tried);
-        let points = hexfill::start_points(&problem, filled);
-        let data = hexfill::mesh_data(&problem, &filled.mesh, points.clone());
-        let numbered = |path: &str| if args.count == 1 || path == "-" { path.to_owned() } else { numbered(path, i + 1) };
-        if let Some(path) = &args.output {
-            let path = numbered(path);
-            files::write_data(&path, args.to, &data)?;
-            output.files.push(path);
+        let placed = boundary.as_deref().map(|b| position(args, filled, b, ctx)).transpose()?;
+        let valid = args.no_embed || placed.as_ref().is_none_or(Placed::is_certified);
+        all_valid &= valid;
+        let mut mesh = MeshOutput { report, geometry: placed.as_ref().map(Placed::report), files: Vec::new() };
+        if valid || !args.require_valid {
+            let suffix = (args.count > 1).then_some(i + 1);
+            mesh.files = write_mesh(args, &problem, filled, placed.as_ref(), suffix)?;
         }
-        if args.view.is_some() || args.picture.is_some() {
-            let Some(points) = &points else { bail!("no positions to draw: the surface has none") };
-            let facts = vec![("route".to_owned(), format!("{:?}", filled.route))];
-            if let Some(path) = &args.view {
-                let path = numbered(path);
-                write_view(&path, &problem.name, points, &filled.mesh, &facts)?;
-                output.files.push(path);
-            }
-            if let Some(path) = &args.picture {
-                let path = numbered(path);
-                crate::commands::view::write_picture(&path, &problem.name, points, &filled.mesh, &facts)?;
-                output.files.push(path);
-            }
-        }
-        output.meshes.push(report);
+        output.meshes.push(mesh);
     }
     output.seconds = start.elapsed().as_secs_f64();
     if console.json && args.output.as_deref() != Some("-") {
         console.print_json(&output)?;
     } else {
-        for report in &output.meshes {
-            console.say(format!(
-                "{}: {} quads filled with {} hexes ({:.1} per quad), {} interior vertices, {} sheets; by {}; judged: L1-L3 passed",
-                report.surface,
-                report.quads,
-                report.hexes,
-                report.hexes_per_quad,
-                report.interior_vertices,
-                report.sheets,
-                route_words(report.route),
-            ));
-        }
-        if output.meshes.len() < args.count as usize {
-            console.say(format!("{} of {} meshes asked for were found", output.meshes.len(), args.count));
-        }
-        console.say(format!("{:.2} s; written: {}", output.seconds, if output.files.is_empty() { "nothing (give -o)".to_owned() } else { output.files.join(", ") }));
+        say(&output, args, console);
     }
-    Ok(Exit::of_stop(result.stop, Exit::Done))
+    Ok(Exit::of_stop(result.stop, if all_valid { Exit::Done } else { Exit::No }))
+}
+
+/// Embeds a mesh, or gives it start positions.
+fn position(args: &FillArgs, filled: &Filled, boundary: &[[f64; 3]], ctx: &Context<'_>) -> anyhow::Result<Placed> {
+    let options = hexfill::embed::Options::default();
+    let limited = ctx.with_time_limit(args.embed_limit);
+    Ok(hexfill::place(filled, boundary, (!args.no_embed).then_some(&options), &limited)?)
+}
+
+/// Writes the mesh, its page and its picture; returns the names of the files.
+fn write_mesh(
+    args: &FillArgs,
+    problem: &Problem,
+    filled: &Filled,
+    placed: Option<&Placed>,
+    suffix: Option<usize>,
+) -> anyhow::Result<Vec<String>> {
+    let named = |path: &str| match suffix {
+        Some(i) if path != "-" => numbered(path, i),
+        _ => path.to_owned(),
+    };
+    let mut written = Vec::new();
+    if let Some(output) = &args.output {
+        let mut data = hexfill::mesh_data(problem, &filled.mesh, placed.map(|p| p.points.clone()));
+        if let Some(placed) = placed.filter(|_| !args.no_embed) {
+            placed.flag(&mut data);
+        }
+        let path = named(output);
+        files::write_data(&path, args.to, &data)?;
+        written.push(path);
+    }
+    if args.view.is_none() && args.picture.is_none() {
+        return Ok(written);
+    }
+    let Some(placed) = placed else { bail!("no positions to draw: the surface has none") };
+    let shown = Shown {
+        title: &problem.name,
+        points: &placed.points,
+        mesh: &filled.mesh,
+        scaled_jacobians: (!args.no_embed).then(|| placed.scaled_jacobians()),
+        facts: vec![
+            ("made by".to_owned(), route_words(filled.route).to_owned()),
+            ("geometry".to_owned(), placed.report().to_string()),
+        ],
+    };
+    if let Some(path) = &args.view {
+        let path = named(path);
+        shown.write_page(&path)?;
+        written.push(path);
+    }
+    if let Some(path) = &args.picture {
+        let path = named(path);
+        shown.write_picture(&path)?;
+        written.push(path);
+    }
+    Ok(written)
+}
+
+/// The report for a person.
+fn say(output: &Output, args: &FillArgs, console: &Console) {
+    for mesh in &output.meshes {
+        let r = &mesh.report;
+        console.say(format!(
+            "{}: {} quads filled with {} hexes ({:.1} per quad), {} interior vertices, {} sheets, by {}",
+            r.surface,
+            r.quads,
+            r.hexes,
+            r.hexes_per_quad,
+            r.interior_vertices,
+            r.sheets,
+            route_words(r.route),
+        ));
+        console.say("connectivity: judged proper, boundary = surface (L1-L3)");
+        match &mesh.geometry {
+            Some(geometry) => console.say(format!("geometry: {geometry}")),
+            None => console.say("geometry: none, the surface has no coordinates"),
+        }
+        if !mesh.files.is_empty() {
+            console.say(format!("written: {}", mesh.files.join(", ")));
+        } else if args.require_valid {
+            console.say("nothing written: --require-valid");
+        } else {
+            console.say("nothing written: give -o OUT");
+        }
+    }
+    if output.meshes.len() < args.count as usize {
+        console.say(format!("{} of {} meshes asked for were found", output.meshes.len(), args.count));
+    }
+    console.say(format!("{:.2} s", output.seconds));
 }
 
 fn route_words(route: hexfill::Route) -> &'static str {

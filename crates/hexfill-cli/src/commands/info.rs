@@ -4,7 +4,9 @@ use crate::console::Console;
 use crate::exit::Exit;
 use crate::files;
 use hexfill::io::{Format, MeshData};
-use hexfill::mesh::{HexMesh, QuadSurface, bipartition, chords, hex_signature, key, sheets, surface_automorphisms, surface_signature};
+use hexfill::mesh::{
+    HexMesh, QuadSurface, bipartition, chords, hex_signature, key, sheets, surface_automorphisms, surface_signature,
+};
 use hexfill::{Problem, check_fillable};
 use serde::Serialize;
 use std::collections::BTreeMap;

@@ -5,7 +5,7 @@ use crate::exit::Exit;
 use crate::files;
 use anyhow::bail;
 use hexfill::io::Format;
-use hexfill::mesh::{HexMesh, greedy_shelling};
+use hexfill::mesh::{HexId, HexMesh, greedy_shelling};
 use hexfill::view::ViewInput;
 use std::io::Write;
 
@@ -39,11 +39,22 @@ pub fn run(args: &ViewArgs, console: &Console) -> anyhow::Result<Exit> {
         bail!("{} has no coordinates; compute them first or give a file that has", args.mesh);
     }
     let mesh = HexMesh::try_new(data.points.len(), &data.hexes)?;
-    let title = args.title.as_deref().unwrap_or(&args.mesh);
+    let judged = hexfill::check::Judged::connectivity(data.points.len(), &data.hexes).with_points(&data.points);
+    let scaled_jacobians = hexfill::check::cell_quality(&judged)
+        .iter()
+        .map(|c| c.as_ref().map_or(f64::NAN, |c| c.certified_lower))
+        .collect();
+    let shown = Shown {
+        title: args.title.as_deref().unwrap_or(&args.mesh),
+        points: &data.points,
+        mesh: &mesh,
+        scaled_jacobians: Some(scaled_jacobians),
+        facts: Vec::new(),
+    };
     if args.output.to_ascii_lowercase().ends_with(".png") {
-        write_picture(&args.output, title, &data.points, &mesh, &[])?;
+        shown.write_picture(&args.output)?;
     } else {
-        write_view(&args.output, title, &data.points, &mesh, &[])?;
+        shown.write_page(&args.output)?;
     }
     console.say(format!("{}: {} hexes", args.output, mesh.n_hexes()));
     Ok(Exit::Done)
@@ -52,28 +63,38 @@ pub fn run(args: &ViewArgs, console: &Console) -> anyhow::Result<Exit> {
 /// Shelling orders are looked for in meshes up to this size: the animation of more hexes shows nothing.
 const SHELLING_LIMIT: usize = 20_000;
 
-/// Writes the HTML page of a mesh.
-pub fn write_view(
-    path: &str,
-    title: &str,
-    points: &[[f64; 3]],
-    mesh: &HexMesh,
-    facts: &[(String, String)],
-) -> anyhow::Result<()> {
-    let shelling = if mesh.n_hexes() <= SHELLING_LIMIT { greedy_shelling(mesh) } else { None };
-    let input = ViewInput { title, points, mesh, hex_values: None, shelling: shelling.as_deref(), facts };
-    files::write_file(path, |out| hexfill::view::write_html(&input, out))
+/// A mesh to show.
+pub struct Shown<'a> {
+    pub title: &'a str,
+    pub points: &'a [[f64; 3]],
+    pub mesh: &'a HexMesh,
+    /// Certified scaled Jacobian per hex.
+    pub scaled_jacobians: Option<Vec<f64>>,
+    /// Further lines of the legend: what and how much.
+    pub facts: Vec<(String, String)>,
 }
 
-/// Writes a PNG picture of a mesh.
-pub fn write_picture(
-    path: &str,
-    title: &str,
-    points: &[[f64; 3]],
-    mesh: &HexMesh,
-    facts: &[(String, String)],
-) -> anyhow::Result<()> {
-    let input = ViewInput { title, points, mesh, hex_values: None, shelling: None, facts };
-    let bytes = hexfill::view::png(&input, 1200, 900);
-    files::write_file(path, |out| out.write_all(&bytes))
+impl Shown<'_> {
+    fn input<'b>(&'b self, shelling: Option<&'b [HexId]>) -> ViewInput<'b> {
+        ViewInput {
+            title: self.title,
+            points: self.points,
+            mesh: self.mesh,
+            hex_values: self.scaled_jacobians.as_deref().map(|v| ("scaled Jacobian", v)),
+            shelling,
+            facts: &self.facts,
+        }
+    }
+
+    /// Writes the HTML page.
+    pub fn write_page(&self, path: &str) -> anyhow::Result<()> {
+        let shelling = if self.mesh.n_hexes() <= SHELLING_LIMIT { greedy_shelling(self.mesh) } else { None };
+        files::write_file(path, |out| hexfill::view::write_html(&self.input(shelling.as_deref()), out))
+    }
+
+    /// Writes the PNG picture: the surface and a cut-away side by side.
+    pub fn write_picture(&self, path: &str) -> anyhow::Result<()> {
+        let bytes = hexfill::view::png(&self.input(None), 1200, 640);
+        files::write_file(path, |out| out.write_all(&bytes))
+    }
 }

@@ -1,0 +1,247 @@
+//! The main job through the real binary: known numbers, the boundary contract, interruption, other formats.
+
+use assert_cmd::Command;
+use std::path::Path;
+use std::process::{Child, Stdio};
+use std::time::{Duration, Instant};
+
+fn hexfill(dir: &Path, args: &[&str]) -> (i32, String, String) {
+    let out = Command::cargo_bin("hexfill").unwrap().current_dir(dir).args(args).output().unwrap();
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+    (out.status.code().expect("not killed"), text(out.stdout), text(out.stderr))
+}
+
+fn json(text: &str) -> serde_json::Value {
+    serde_json::from_str(text).unwrap_or_else(|e| panic!("{e}: {text}"))
+}
+
+/// Judges connectivity and boundary of `mesh` with the real binary.
+fn judged(dir: &Path, mesh: &str, surface: &str) -> serde_json::Value {
+    let (_, out, _) = hexfill(dir, &["check", mesh, "--surface", surface, "--json"]);
+    json(&out)
+}
+
+fn passed(report: &serde_json::Value, level: usize) -> bool {
+    report["levels"].as_array().unwrap()[..=level].iter().all(|l| l["outcome"] == "passed")
+}
+
+#[test]
+fn every_catalogue_entry_is_filled_as_well_as_known() {
+    let dir = tempfile::tempdir().unwrap();
+    for (name, at_most) in [
+        (":cube", 1),
+        (":octagonal-spindle", 40),
+        (":schneiders-pyramid", 36),
+        (":geode", 34),
+        (":buffer-cube-20", 37),
+        (":buffer-cube-22", 28),
+        (":carbonera-fig10", 37),
+        (":refinement-9-1", 13),
+    ] {
+        let start = Instant::now();
+        let (code, out, err) = hexfill(dir.path(), &["fill", name, "-o", "m.json", "--no-embed", "--json"]);
+        assert_eq!(code, 0, "{name}: {err}");
+        assert!(start.elapsed() < Duration::from_secs(10), "{name} took {:?}", start.elapsed());
+        let hexes = json(&out)["meshes"][0]["hexes"].as_u64().unwrap();
+        assert!(hexes <= at_most, "{name}: {hexes} hexes");
+        let report = judged(dir.path(), "m.json", name);
+        assert!(passed(&report, 2), "{name}: {report}");
+        assert_eq!(report["facts"]["ball"], "yes");
+        assert_eq!(report["facts"]["hexes"], hexes);
+    }
+}
+
+#[test]
+fn shipped_meshes_are_what_the_catalogue_says() {
+    let dir = tempfile::tempdir().unwrap();
+    let (_, out, _) = hexfill(dir.path(), &["catalog", "--json"]);
+    for entry in json(&out).as_array().unwrap() {
+        let Some(hexes) = entry["mesh_hexes"].as_u64() else { continue };
+        let name = entry["name"].as_str().unwrap();
+        let (code, _, err) = hexfill(dir.path(), &["catalog", "show", name, "--mesh", "best.json"]);
+        assert_eq!(code, 0, "{err}");
+        let report = judged(dir.path(), "best.json", name);
+        assert!(passed(&report, 2), "{name}: {report}");
+        assert!(entry["best"].as_str().unwrap().starts_with(&format!("{hexes} hexes")), "{name}");
+    }
+}
+
+#[test]
+fn the_surface_comes_back_bit_for_bit() {
+    let dir = tempfile::tempdir().unwrap();
+    let points = "v -0.0 0 0\nv 1e-300 0.1 0.30000000000000004\nv 1 1 0\nv 0 1 5e-324\nv 0 0 1\nv 1 0 1\nv 1 1 1.7976931348623157e300\nv 0 1 1\nv 9 9 9\n";
+    // Inside out, one quad turned, and a point nobody uses.
+    let faces = "f 4 8 5 1\nf 6 7 3 2\nf 1 2 6 5\nf 3 7 8 4\nf 2 3 4 1\nf 8 7 6 5\n";
+    std::fs::write(dir.path().join("s.obj"), format!("{points}{faces}")).unwrap();
+    for out in ["m.vtk", "m.vtu", "m.mesh", "m.json", "m.vtk.gz"] {
+        let (code, _, err) = hexfill(dir.path(), &["fill", "s.obj", "-o", out, "--no-embed"]);
+        assert_eq!(code, 0, "{err}");
+        assert!(err.contains("turned"), "{err}");
+        let (code, back, err) = hexfill(dir.path(), &["convert", out, "-o", "-", "--to", "obj"]);
+        assert_eq!(code, 0, "{err}");
+        let numbers = |text: &str| -> Vec<u64> {
+            text.lines()
+                .filter(|l| l.starts_with("v "))
+                .flat_map(|l| {
+                    l[2..].split_whitespace().map(|x| x.parse::<f64>().unwrap().to_bits()).collect::<Vec<_>>()
+                })
+                .collect()
+        };
+        assert_eq!(numbers(&back)[..27], numbers(points)[..], "{out}");
+    }
+}
+
+#[test]
+fn names_signatures_stdin_and_stdout_are_accepted() {
+    let dir = tempfile::tempdir().unwrap();
+    let (_, out, _) = hexfill(dir.path(), &["info", ":octagonal-spindle", "--json"]);
+    let info = json(&out);
+    assert_eq!(info["key"], "8x[8,8]");
+    let signature = info["signature"].as_str().unwrap();
+    let (code, _, err) = hexfill(dir.path(), &["fill", signature, "-o", "m.json", "--no-embed"]);
+    assert_eq!(code, 0, "{err}");
+    let (_, surface, _) = hexfill(dir.path(), &["convert", ":buffer-cube-22", "-o", "-", "--to", "off"]);
+    let piped = Command::cargo_bin("hexfill")
+        .unwrap()
+        .args(["fill", "-", "--from", "off", "-o", "-", "--to", "json", "--no-embed"])
+        .write_stdin(surface)
+        .output()
+        .unwrap();
+    assert_eq!(piped.status.code(), Some(0));
+    let mesh = json(&String::from_utf8(piped.stdout).unwrap());
+    assert_eq!(mesh["hexes"].as_array().unwrap().len(), 28);
+}
+
+#[test]
+fn several_meshes_are_pairwise_different() {
+    let dir = tempfile::tempdir().unwrap();
+    let args = ["fill", ":buffer-cube-20", "-o", "m.json", "--count", "3", "--no-embed", "--json"];
+    let (code, out, err) = hexfill(dir.path(), &args);
+    assert_eq!(code, 0, "{err}");
+    let report = json(&out);
+    let mut signatures: Vec<&str> =
+        report["meshes"].as_array().unwrap().iter().map(|m| m["signature"].as_str().unwrap()).collect();
+    assert_eq!(signatures.len(), 3);
+    signatures.sort_unstable();
+    signatures.dedup();
+    assert_eq!(signatures.len(), 3);
+    for i in 1..=3 {
+        assert!(passed(&judged(dir.path(), &format!("m-{i}.json"), ":buffer-cube-20"), 2));
+    }
+}
+
+#[test]
+fn no_answer_is_exit_code_1_and_writes_nothing() {
+    let dir = tempfile::tempdir().unwrap();
+    let args = ["fill", ":octagonal-spindle", "--strategy", "atlas", "--max-hexes", "8", "-o", "m.vtk"];
+    let (code, _, err) = hexfill(dir.path(), &args);
+    assert_eq!(code, 1, "{err}");
+    assert!(err.contains("which does not mean that none exists"), "{err}");
+    assert!(!dir.path().join("m.vtk").exists());
+}
+
+#[test]
+fn the_same_bytes_for_any_number_of_threads() {
+    let dir = tempfile::tempdir().unwrap();
+    for threads in ["1", "2", "7"] {
+        let out = format!("m{threads}.vtk");
+        let args = ["-j", threads, "fill", ":refinement-9-1", "--no-embed", "-o", "m.json"];
+        assert_eq!(hexfill(dir.path(), &args).0, 0);
+        std::fs::rename(dir.path().join("m.json"), dir.path().join(&out)).unwrap();
+        assert_eq!(
+            std::fs::read(dir.path().join(&out)).unwrap(),
+            std::fs::read(dir.path().join("m1.vtk")).unwrap(),
+            "{threads} threads"
+        );
+    }
+}
+
+fn start(dir: &Path, args: &[&str]) -> Child {
+    std::process::Command::new(assert_cmd::cargo::cargo_bin("hexfill"))
+        .current_dir(dir)
+        .args(args)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap()
+}
+
+fn wait_for_size(path: &Path, size: u64) {
+    let start = Instant::now();
+    while std::fs::metadata(path).map_or(0, |m| m.len()) < size {
+        assert!(start.elapsed() < Duration::from_secs(120), "{} did not grow", path.display());
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+#[test]
+fn a_killed_atlas_build_goes_on_and_ends_with_the_same_bytes() {
+    let dir = tempfile::tempdir().unwrap();
+    let whole = ["atlas", "build", "--cap", "20", "--levels", "30", "-o", "whole.hxgrow"];
+    assert_eq!(hexfill(dir.path(), &whole).0, 0);
+    let killed = ["atlas", "build", "--cap", "20", "--levels", "30", "-o", "killed.hxgrow"];
+    for size in [40, 3_000, 12_000] {
+        let mut child = start(dir.path(), &killed);
+        wait_for_size(&dir.path().join("killed.hxgrow"), size);
+        child.kill().unwrap();
+        child.wait().unwrap();
+    }
+    let (code, _, err) = hexfill(dir.path(), &killed);
+    assert_eq!(code, 0, "{err}");
+    assert_eq!(
+        std::fs::read(dir.path().join("whole.hxgrow")).unwrap(),
+        std::fs::read(dir.path().join("killed.hxgrow")).unwrap()
+    );
+    let (_, out, _) = hexfill(dir.path(), &["atlas", "stats", "whole.hxgrow", "--json"]);
+    assert_eq!(json(&out)[0]["quads"], 6);
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_fill_says_so_and_goes_on() {
+    let dir = tempfile::tempdir().unwrap();
+    // An atlas of one cube forces the growth; the limit stops it on the way to the pyramid.
+    assert_eq!(hexfill(dir.path(), &["atlas", "build", "--levels", "1", "-o", "tiny.hxgrow"]).0, 0);
+    let args = [
+        "fill",
+        ":buffer-cube-22",
+        "--strategy",
+        "atlas",
+        "--atlas",
+        "tiny.hxgrow",
+        "--cap",
+        "22",
+        "--max-hexes",
+        "29",
+        "-o",
+        "m.json",
+        "--no-embed",
+        "--growth-log",
+        "grow.hxgrow",
+        "--inward-limit",
+        "0",
+    ];
+    let child = start(dir.path(), &args);
+    wait_for_size(&dir.path().join("grow.hxgrow"), 2_000);
+    let status = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert!(status.success());
+    let out = child.wait_with_output().unwrap();
+    assert!([Some(3), Some(0), Some(1)].contains(&out.status.code()), "{out:?}");
+    let before = std::fs::metadata(dir.path().join("grow.hxgrow")).unwrap().len();
+    let (code, _, err) = hexfill(dir.path(), &args);
+    assert!(code == 0 || code == 1, "{err}");
+    assert!(std::fs::metadata(dir.path().join("grow.hxgrow")).unwrap().len() >= before);
+}
+
+#[test]
+fn view_and_picture_are_written() {
+    let dir = tempfile::tempdir().unwrap();
+    let args = ["fill", ":buffer-cube-22", "-o", "m.vtk", "--view", "m.html", "--picture", "m.png", "--no-embed"];
+    let (code, _, err) = hexfill(dir.path(), &args);
+    assert_eq!(code, 0, "{err}");
+    let html = std::fs::read_to_string(dir.path().join("m.html")).unwrap();
+    assert!(html.starts_with("<!") && html.contains("</html>"));
+    assert_eq!(&std::fs::read(dir.path().join("m.png")).unwrap()[1..4], b"PNG");
+    let (code, _, err) = hexfill(dir.path(), &["view", "m.vtk", "-o", "again.html"]);
+    assert_eq!(code, 0, "{err}");
+}

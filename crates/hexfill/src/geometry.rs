@@ -1,0 +1,128 @@
+//! Coordinates for a filling, and what the judge says of them cell by cell. Never more is said than was shown.
+
+use crate::fill::Filled;
+use crate::problem::Problem;
+use hexfill_check::{CellQuality, Judged, cell_quality};
+use hexfill_embed::{EmbedError, EmbedReport, canonical_polyhedron, embed, tutte_start};
+use hexfill_io::MeshData;
+use hexfill_mesh::Context;
+use serde::Serialize;
+
+/// Positions of all vertices of a mesh with the judge's verdict on every hex.
+#[derive(Clone, Debug)]
+pub struct Placed {
+    /// Position per vertex; the surface's own come first, bit for bit.
+    pub points: Vec<[f64; 3]>,
+    /// Per hex: its quality and whether det J > 0 was certified on all of it.
+    pub cells: Vec<CellQuality>,
+    /// What the embedding reports; absent if only start positions were asked for.
+    pub embedding: Option<EmbedReport>,
+}
+
+/// Numbers about the geometry of a mesh, for people and for JSON.
+#[derive(Clone, Debug, Serialize)]
+pub struct GeometryReport {
+    /// Hexes with det J > 0 certified everywhere.
+    pub certified: usize,
+    /// All hexes.
+    pub hexes: usize,
+    /// Least scaled Jacobian at the corners of any hex.
+    pub corner_scaled_jacobian: f64,
+    /// Certified lower bound of the least scaled Jacobian over whole hexes; -1 if a hex is not certified.
+    pub certified_scaled_jacobian: f64,
+    /// What the embedding reports.
+    pub embedding: Option<EmbedReport>,
+}
+
+/// The positions of a problem's vertices: its own, or those of the canonical polyhedron of a sphere without any.
+pub fn boundary_points(problem: &Problem) -> Option<Vec<[f64; 3]>> {
+    match &problem.points {
+        Some(points) => Some(points.clone()),
+        None if problem.surface.is_sphere() => canonical_polyhedron(&problem.surface).ok(),
+        None => None,
+    }
+}
+
+/// Places a filling: with `options` it is embedded, without it gets start positions only (the construction's, or Tutte's).
+///
+/// # Errors
+/// [`EmbedError`] if the boundary positions cannot be used; there is then no geometry, whatever the interior.
+pub fn place(
+    filled: &Filled,
+    boundary: &[[f64; 3]],
+    options: Option<&hexfill_embed::Options>,
+    ctx: &Context<'_>,
+) -> Result<Placed, EmbedError> {
+    let (points, embedding) = match options {
+        Some(options) => {
+            let made = embed(&filled.mesh, boundary, filled.start.as_deref(), options, ctx)?;
+            (made.points, Some(made.report))
+        }
+        None => match &filled.start {
+            Some(start) => (start.clone(), None),
+            None => (tutte_start(&filled.mesh, boundary)?, None),
+        },
+    };
+    let hexes = filled.mesh.hexes_raw();
+    let judged = Judged::connectivity(filled.mesh.n_vertices(), &hexes).with_points(&points);
+    // Every vertex id of a `HexMesh` has a position here, so every hex has a quality.
+    let cells = cell_quality(&judged).into_iter().flatten().collect();
+    Ok(Placed { points, cells, embedding })
+}
+
+impl Placed {
+    /// Whether det J > 0 is certified on all of every hex.
+    pub fn is_certified(&self) -> bool {
+        self.cells.iter().all(|c| c.valid)
+    }
+
+    /// The numbers.
+    pub fn report(&self) -> GeometryReport {
+        let least = |value: fn(&CellQuality) -> f64| self.cells.iter().map(value).fold(f64::INFINITY, f64::min);
+        GeometryReport {
+            certified: self.cells.iter().filter(|c| c.valid).count(),
+            hexes: self.cells.len(),
+            corner_scaled_jacobian: least(|c| c.corner_scaled_jacobian),
+            certified_scaled_jacobian: least(|c| c.certified_lower),
+            embedding: self.embedding.clone(),
+        }
+    }
+
+    /// Certified scaled Jacobian per hex, for colours.
+    pub fn scaled_jacobians(&self) -> Vec<f64> {
+        self.cells.iter().map(|c| if c.valid { c.certified_lower } else { c.corner_scaled_jacobian.min(0.0) }).collect()
+    }
+
+    /// Adds two numbers per hex to file data: whether it is certified (1 or 0), and its scaled Jacobian.
+    pub fn flag(&self, data: &mut MeshData) {
+        let certified = self.cells.iter().map(|c| f64::from(u8::from(c.valid))).collect();
+        data.hex_data.push(("certified_positive".to_owned(), certified));
+        data.hex_data.push(("scaled_jacobian".to_owned(), self.scaled_jacobians()));
+    }
+}
+
+impl std::fmt::Display for GeometryReport {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        if self.certified == self.hexes {
+            return write!(
+                f,
+                "det J > 0 certified in all {} hexes, scaled Jacobian at least {:.6} (corners {:.6})",
+                self.hexes, self.certified_scaled_jacobian, self.corner_scaled_jacobian
+            );
+        }
+        write!(f, "det J > 0 certified in {} of {} hexes only", self.certified, self.hexes)?;
+        let Some(e) = &self.embedding else { return write!(f, " (start positions, not embedded)") };
+        write!(f, "; {} starts, {} valid", e.starts, e.valid_starts)?;
+        let worst: Vec<String> = e.worst_cells.iter().take(5).map(|c| c.hex.to_string()).collect();
+        write!(f, ", worst cells {}", worst.join(" "))?;
+        if e.is_impossible() {
+            let vertex = e.star_bounds.first().map_or(String::new(), |b| format!(" at {}", b.vertex));
+            write!(
+                f,
+                "; with this connectivity and boundary no placement is valid (star bound {:.4}{vertex})",
+                e.upper_bound
+            )?;
+        }
+        Ok(())
+    }
+}
