@@ -357,30 +357,30 @@ pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
     let wedges = data.wedges.iter().map(|c| ("C3D6", c.as_slice(), 0));
     let pyramids = data.pyramids.iter().map(|c| ("C3D5", c.as_slice(), 0));
     let mut block = None;
+    let mut tags = Vec::new();
     for (i, (element_type, nodes, tag)) in faces.chain(hexes).chain(tets).chain(wedges).chain(pyramids).enumerate() {
-        if block != Some((element_type, tag)) {
-            block = Some((element_type, tag));
-            write!(out, "*ELEMENT, TYPE={element_type}")?;
-            if tag != 0 {
-                write!(out, ", ELSET={}", name_of(tag).to_ascii_uppercase())?;
-            }
-            out.write_all(b"\n")?;
+        if block != Some(element_type) {
+            block = Some(element_type);
+            writeln!(out, "*ELEMENT, TYPE={element_type}")?;
         }
         write!(out, "{}", i + 1)?;
         for &node in nodes {
             write!(out, ", {}", u64::from(node) + 1)?;
         }
         out.write_all(b"\n")?;
+        tags.push(tag);
     }
-    write_node_sets(out, data)
+    // Each set once: meshio forgets all but the last part of a set that is spread over several blocks.
+    write_sets(out, "ELSET", &tags)?;
+    write_sets(out, "NSET", data.point_tags.as_deref().unwrap_or_default())
 }
 
-fn write_node_sets(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
-    let Some(tags) = &data.point_tags else { return Ok(()) };
+/// Lists of the members (counted from 1) of each tag but 0.
+fn write_sets(out: &mut dyn Write, keyword: &str, tags: &[i64]) -> io::Result<()> {
     let mut sorted: Vec<(i64, usize)> = tags.iter().copied().zip(1..).filter(|&(tag, _)| tag != 0).collect();
     sorted.sort_unstable();
     for set in sorted.chunk_by(|a, b| a.0 == b.0) {
-        writeln!(out, "*NSET, NSET={}", name_of(set[0].0).to_ascii_uppercase())?;
+        writeln!(out, "*{keyword}, {keyword}={}", name_of(set[0].0).to_ascii_uppercase())?;
         for line in set.chunks(8) {
             let numbers: Vec<String> = line.iter().map(|(_, i)| i.to_string()).collect();
             writeln!(out, "{}", numbers.join(", "))?;

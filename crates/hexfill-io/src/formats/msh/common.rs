@@ -431,10 +431,9 @@ pub(crate) fn write_data(out: &mut dyn Write, data: &MeshData) -> io::Result<()>
 }
 
 fn write_array(out: &mut dyn Write, section: &str, name: &str, first: usize, values: &[f64]) -> io::Result<()> {
-    // One text, one time, three numbers: time step, components, count. NaN is left out: no value.
-    let count = values.iter().filter(|v| !v.is_nan()).count();
-    writeln!(out, "${section}\n1\n\"{}\"\n1\n0.0\n3\n0\n1\n{count}", unquoted(name))?;
-    for (i, &value) in values.iter().enumerate().filter(|(_, v)| !v.is_nan()) {
+    // One text, one time, three numbers: time step, components, count.
+    writeln!(out, "${section}\n1\n\"{}\"\n1\n0.0\n3\n0\n1\n{}", unquoted(name), values.len())?;
+    for (i, &value) in values.iter().enumerate() {
         writeln!(out, "{} {}", first + i, Real(value))?;
     }
     writeln!(out, "$End{section}")

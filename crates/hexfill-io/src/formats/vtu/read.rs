@@ -226,6 +226,7 @@ fn parse<'a>(file: &mut File<'_>, text: &'a str) -> Result<Vec<Piece<'a>>, ReadE
     let mut in_piece = false;
     let mut array: Option<Array<'a>> = None;
     let mut depth = 0u32;
+    let mut array_depth = 0;
     let mut root = false;
     loop {
         let start = xml.buffer_position() as usize;
@@ -255,6 +256,9 @@ fn parse<'a>(file: &mut File<'_>, text: &'a str) -> Result<Vec<Piece<'a>>, ReadE
             }
             Event::Text(t) => {
                 let (Some(array), std::borrow::Cow::Borrowed(text)) = (&mut array, t.into_inner()) else { continue };
+                if depth != array_depth {
+                    continue; // an InformationKey inside the array
+                }
                 if array.text.trim_ascii().is_empty() {
                     array.text = text;
                 } else if !text.trim_ascii().is_empty() {
@@ -311,7 +315,7 @@ fn parse<'a>(file: &mut File<'_>, text: &'a str) -> Result<Vec<Piece<'a>>, ReadE
                 };
                 match pieces.last_mut() {
                     Some(piece) if empty => piece.arrays.push(parsed),
-                    _ => array = Some(parsed),
+                    _ => (array, array_depth) = (Some(parsed), depth),
                 }
             }
             _ if in_piece => section = if empty { None } else { Section::from_name(&name).or(section) },

@@ -1,0 +1,451 @@
+"""What other programs make of our files, and files made by other programs.
+
+    foreign_readers.py check DIRECTORY    read every file there with every program that knows its format
+    foreign_readers.py write DIRECTORY    write the mesh of expected.json with every program, list the files
+
+Called by foreign_readers.rs. The mesh is chiral, so a wrong node order cannot hide behind a symmetry: hexes are compared
+up to the 24 rotations of the cube, never up to reflections, and their volume must be positive.
+"""
+
+import itertools
+import json
+import pathlib
+import sys
+
+import gmsh
+import meshio
+import numpy as np
+import pyvista
+import vtk
+
+CORNERS = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
+
+
+def rotations():
+    """The 24 rotations of the cube as permutations of its corners, from their definition."""
+    found = []
+    for axes in itertools.permutations(range(3)):
+        for signs in itertools.product((1, -1), repeat=3):
+            matrix = np.zeros((3, 3))
+            for i, (axis, sign) in enumerate(zip(axes, signs)):
+                matrix[i, axis] = sign
+            if np.linalg.det(matrix) > 0:
+                centred = (np.array(CORNERS) * 2 - 1) @ matrix.T
+                found.append([CORNERS.index(tuple(int(x) for x in (c + 1) // 2)) for c in centred])
+    assert len(found) == 24
+    return found
+
+
+ROTATIONS = rotations()
+
+
+def hex_key(h):
+    return min(tuple(int(h[i]) for i in r) for r in ROTATIONS)
+
+
+def quad_key(q):
+    q = [int(v) for v in q]
+    k = q.index(min(q))
+    return tuple(q[k:] + q[:k])
+
+
+def volume(points, h):
+    """Six times the sum of the corner tetrahedra: positive for a hex in the right order."""
+    total = 0.0
+    for i, (a, b, c) in enumerate([(1, 3, 4), (2, 0, 5), (3, 1, 6), (0, 2, 7), (7, 5, 0), (4, 6, 1), (5, 7, 2), (6, 4, 3)]):
+        p = points[[h[i], h[a], h[b], h[c]]]
+        total += np.linalg.det(p[1:] - p[0])
+    return total
+
+
+class Mesh:
+    """Points, quads and hexes with tags (None: the reader has none)."""
+
+    def __init__(self, points, quads, hexes, quad_tags=None, hex_tags=None, point_tags=None):
+        self.points = np.asarray(points, dtype=float)[:, :3]
+        self.quads = [list(map(int, q)) for q in quads]
+        self.hexes = [list(map(int, h)) for h in hexes]
+        self.quad_tags, self.hex_tags, self.point_tags = quad_tags, hex_tags, point_tags
+
+    def connectivity(self, order, with_quad_tags, with_hex_tags):
+        """Sorted lists of keys; `order` maps point numbers."""
+        quads = [
+            (quad_key([order[v] for v in q]), int(self.quad_tags[i]) if with_quad_tags else 0)
+            for i, q in enumerate(self.quads)
+        ]
+        hexes = [
+            (hex_key([order[v] for v in h]), int(self.hex_tags[i]) if with_hex_tags else 0)
+            for i, h in enumerate(self.hexes)
+        ]
+        return sorted(quads), sorted(hexes)
+
+
+def load_expected(directory):
+    data = json.loads((directory / "expected.json").read_text())
+    return Mesh(
+        data["points"], data["boundary_quads"], data["hexes"], data["quad_tags"], data["hex_tags"], data["point_tags"]
+    )
+
+
+def compare(found, due, tolerance, has_quads, has_hexes, what):
+    """Asserts that both are the same mesh; points are matched by position."""
+    assert len(found.points) == len(due.points), f"{what}: {len(found.points)} points"
+    order = []
+    for p in found.points:
+        distance = np.abs(due.points - p).max(axis=1)
+        assert distance.min() <= tolerance, f"{what}: {p} is no point"
+        order.append(int(distance.argmin()))
+    assert sorted(order) == list(range(len(order))), what
+    reference = Mesh(due.points, due.quads if has_quads else [], due.hexes if has_hexes else [], due.quad_tags, due.hex_tags)
+    tags = (found.quad_tags is not None, found.hex_tags is not None)
+    got = found.connectivity(order, *tags)
+    want = reference.connectivity(range(len(order)), *tags)
+    assert got == want, f"{what}:\n{got}\n{want}"
+    for h in found.hexes:
+        assert volume(found.points, h) > 0, what
+    if found.point_tags is not None:
+        assert [int(t) for t in np.ravel(found.point_tags)] == [due.point_tags[k] for k in order], f"{what}: tags of points"
+
+
+def gather(blocks, tags):
+    """All cells of a kind and their tags from meshio's blocks."""
+    cells, values = [], []
+    for data, t in blocks:
+        cells += list(data)
+        if t is not None:
+            values += list(np.ravel(t))
+    return cells, (values if tags else None)
+
+
+def by_meshio(path):
+    m = meshio.gmsh.read(path) if path.suffix == ".msh" else meshio.read(path)
+    name = next((n for n in ("tag", "gmsh:physical", "medit:ref") if n in m.cell_data), None)
+    sets = {}
+    if path.suffix == ".inp":
+        # Element sets TAG_n: for each block the positions of its members.
+        for set_name, blocks in m.cell_sets.items():
+            for k, members in enumerate(blocks):
+                for i in [] if members is None else members:
+                    sets[(k, int(i))] = int(set_name.split("_")[1])
+    result = {}
+    for kind in ("quad", "hexahedron"):
+        blocks = []
+        for k, block in enumerate(m.cells):
+            if block.type == kind:
+                tags = m.cell_data[name][k] if name else None
+                if sets:
+                    tags = [sets[(k, i)] for i in range(len(block.data))]
+                blocks.append((block.data, tags))
+        result[kind] = gather(blocks, name is not None or bool(sets))
+    point_name = next((n for n in ("tag", "medit:ref") if n in m.point_data), None)
+    point_tags = m.point_data[point_name] if point_name else None
+    (quads, quad_tags), (hexes, hex_tags) = result["quad"], result["hexahedron"]
+    return Mesh(m.points, quads, hexes, quad_tags, hex_tags, point_tags)
+
+
+def by_pyvista(path):
+    p = pyvista.read(path)
+    if isinstance(p, pyvista.PolyData):
+        return Mesh(p.points, p.faces.reshape(-1, 5)[:, 1:], [], p.cell_data.get("tag"), None, p.point_data.get("tag"))
+    tags = p.cell_data.get("tag")
+    select = {t: np.flatnonzero(p.celltypes == t) for t in (9, 12)}
+    cells = {t: p.cells_dict.get(t, []) for t in (9, 12)}
+    assert len(cells[9]) + len(cells[12]) == p.n_cells
+    pick = lambda t: None if tags is None else tags[select[t]]
+    return Mesh(p.points, cells[9], cells[12], pick(9), pick(12), p.point_data.get("tag"))
+
+
+def gmsh_open(path):
+    gmsh.initialize()
+    gmsh.option.setNumber("General.Terminal", 0)
+    gmsh.open(str(path))
+
+
+def by_gmsh(path):
+    gmsh_open(path)
+    try:
+        numbers, coordinates, _ = gmsh.model.mesh.getNodes()
+        where = {int(n): i for i, n in enumerate(numbers)}
+        cells, tags = {3: [], 5: []}, {3: [], 5: []}
+        for dim in (2, 3):
+            for _, entity in gmsh.model.getEntities(dim):
+                groups = gmsh.model.getPhysicalGroupsForEntity(dim, entity)
+                # MEDIT references become entities; in MSH the physical group is the tag.
+                tag = int(groups[0]) if path.suffix == ".msh" else entity
+                for kind, _, nodes in zip(*gmsh.model.mesh.getElements(dim, entity)):
+                    size = {3: 4, 5: 8}[int(kind)]
+                    for cell in np.reshape(nodes, (-1, size)):
+                        cells[int(kind)].append([where[int(n)] for n in cell])
+                        tags[int(kind)].append(tag)
+        carried = path.suffix in (".msh", ".mesh")
+        points = np.reshape(coordinates, (-1, 3))
+        return Mesh(points, cells[3], cells[5], tags[3] if carried else None, tags[5] if carried else None)
+    finally:
+        gmsh.finalize()
+
+
+def by_json(path):
+    data = json.loads(path.read_text())
+    return Mesh(
+        data["points"],
+        data["boundary_quads"],
+        data["hexes"],
+        data.get("quad_tags"),
+        data.get("hex_tags"),
+        data.get("point_tags"),
+    )
+
+
+def by_definition_of_ovm(path):
+    """There is no OVM reader on PyPI: half-faces are followed here from the definition of the format."""
+    words = path.read_text().split()
+    assert words[:3] == ["OVM", "ASCII", "Vertices"]
+    at = 3
+
+    def take(n):
+        nonlocal at
+        at += n
+        return words[at - n : at]
+
+    n = int(take(1)[0])
+    points = np.array(take(3 * n), dtype=float).reshape(-1, 3)
+    name, n = take(2)
+    assert name == "Edges"
+    edges = [tuple(map(int, take(2))) for _ in range(int(n))]
+    lists = {}
+    for section in ("Faces", "Polyhedra"):
+        name, n = take(2)
+        assert name == section
+        lists[section] = [list(map(int, take(int(take(1)[0])))) for _ in range(int(n))]
+
+    def cycle(half_face):
+        half_edges = lists["Faces"][half_face // 2]
+        ends = [edges[e // 2][:: -1 if e % 2 else 1] for e in half_edges]
+        assert all(ends[k][1] == ends[(k + 1) % len(ends)][0] for k in range(len(ends)))
+        start = [a for a, _ in ends]
+        return start[::-1] if half_face % 2 else start
+
+    hexes, uses = [], {}
+    for half_faces in lists["Polyhedra"]:
+        cycles = [cycle(f) for f in half_faces]
+        for f in half_faces:
+            assert uses.setdefault(f, 0) == 0, "each half-face bounds one cell"
+            uses[f] = 1
+        # As `add_cell` orders them, 0 and 1 are opposite; each is seen counter-clockwise from inside.
+        bottom, top = cycles[0], cycles[1]
+        above = {}
+        for side in cycles[2:]:
+            for k in range(4):
+                a, b = side[k], side[(k + 1) % 4]
+                if a in bottom and b in top:
+                    above[a] = b
+        hexes.append(bottom + [above[v] for v in bottom])
+        # Opposite pairs share no vertex.
+        assert not set(cycles[2]) & set(cycles[3]) and not set(cycles[4]) & set(cycles[5])
+    quads = [cycle(2 * f) for f in range(len(lists["Faces"])) if uses.get(2 * f, 0) + uses.get(2 * f + 1, 0) <= 1]
+    return Mesh(points, quads, hexes)
+
+
+READERS = {
+    ".obj": [by_meshio, by_pyvista, by_gmsh],
+    ".off": [by_gmsh],  # meshio reads triangles only
+    ".ply": [by_meshio, by_pyvista],
+    ".vtk": [by_meshio, by_pyvista, by_gmsh],
+    ".vtu": [by_meshio, by_pyvista],
+    ".mesh": [by_meshio, by_gmsh],
+    ".msh": [by_meshio, by_gmsh],
+    ".inp": [by_meshio],  # Gmsh writes it only
+    ".ovm": [by_definition_of_ovm],
+    ".json": [by_json],
+}
+
+
+def check(directory):
+    due = load_expected(directory)
+    for path in sorted(directory.glob("*.*")):
+        for reader in READERS[path.suffix]:
+            binary = "-binary" in path.name
+            if reader is by_meshio and binary and path.suffix == ".ply":
+                continue  # meshio 5.3.5 fails on binary lists followed by another property (the tag)
+            if reader is by_gmsh and binary:
+                continue  # Gmsh reads no binary VTK of version 3.0
+            # meshio and PyVista keep PLY (and VTK keeps OBJ) in single precision in some versions.
+            tolerance = 1e-6 if path.suffix in (".ply", ".obj") else 0.0
+            found = reader(path)
+            surface_format = path.suffix in (".obj", ".off", ".ply")
+            has_hexes = "-surface" not in path.name and not surface_format
+            has_quads = "-hexes" not in path.name
+            compare(found, due, tolerance, has_quads, has_hexes, f"{path.name} {reader.__name__}")
+            compare_data(path, reader)
+            tags = "with tags" if found.quad_tags is not None else "without tags"
+            print(f"ok {path.name} {reader.__name__} {tags}")
+
+
+def compare_data(path, reader):
+    """The numbers on hexes and points, in the formats that carry them."""
+    full = [path.stem for e in ("vtk", "vtu") if path.stem in (e, e + "-binary")] or "-hexes" in path.name
+    if not full or reader is by_gmsh:
+        return
+    if reader is by_meshio:
+        m = meshio.gmsh.read(path) if path.suffix == ".msh" else meshio.read(path)
+        name = next(n for n in m.cell_data if n.startswith("scaled"))
+        hexes = np.concatenate([d for d, c in zip(m.cell_data[name], m.cells) if c.type == "hexahedron"])
+        heights = m.point_data["height"]
+    else:
+        p = pyvista.read(path)
+        hexes, heights = p.cell_data["scaled Jacobian"][p.celltypes == 12], p.point_data["height"]
+    assert list(hexes) == [0.75, -1e-300], (path, hexes)
+    assert list(heights) == [i / 7 for i in range(12)], (path, heights)
+
+
+def write_meshio(directory, due):
+    cells = [("quad", np.array(due.quads)), ("hexahedron", np.array(due.hexes))]
+    tags = [np.array(due.quad_tags), np.array(due.hex_tags)]
+    full = {
+        name: meshio.Mesh(due.points, cells, cell_data={key: tags})
+        for name, key in [("plain", "tag"), ("medit", "medit:ref")]
+    }
+    physical = meshio.Mesh(due.points, cells, cell_data={"gmsh:physical": tags, "gmsh:geometrical": tags})
+    surface = meshio.Mesh(due.points, cells[:1])
+    for version in ("vtk42", "vtk51"):
+        for binary in (True, False):
+            name = f"meshio-{version}-{'binary' if binary else 'ascii'}.vtk"
+            meshio.write(directory / name, full["plain"], file_format=version, binary=binary)
+            yield name, "single" if not binary else "exact", "tags", "both"
+    for kind, options in [
+        ("ascii", {"binary": False}),
+        ("zlib", {"binary": True, "compression": "zlib"}),
+        ("plain", {"binary": True, "compression": None}),
+    ]:
+        name = f"meshio-{kind}.vtu"
+        meshio.write(directory / name, full["plain"], file_format="vtu", **options)
+        yield name, "single" if kind == "ascii" else "exact", "tags", "both"
+    meshio.write(directory / "meshio.mesh", full["medit"])
+    yield "meshio.mesh", "single", "tags", "both"
+    for version in ("gmsh22", "gmsh"):
+        for binary in (True, False):
+            name = f"meshio-{version}-{'binary' if binary else 'ascii'}.msh"
+            # meshio writes 4.1 without $Entities, so the tags are lost there.
+            if version == "gmsh":
+                physical.point_data["gmsh:dim_tags"] = np.array([[3, 21]] * len(due.points))
+            meshio.write(directory / name, physical, file_format=version, binary=binary)
+            tags_kept = "tags" if version == "gmsh22" else "notags"
+            yield name, "exact" if binary else "single", tags_kept, "both"
+    meshio.write(directory / "meshio.inp", full["plain"])
+    yield "meshio.inp", "single", "notags", "both"
+    meshio.write(directory / "meshio.obj", surface)
+    yield "meshio.obj", "single", "notags", "quads"
+    for binary in (True, False):
+        name = f"meshio-{'binary' if binary else 'ascii'}.ply"
+        meshio.write(directory / name, surface, binary=binary)
+        yield name, "exact" if binary else "single", "notags", "quads"
+
+
+def write_pyvista(directory, due):
+    n_quads, n_hexes = len(due.quads), len(due.hexes)
+    cells = np.concatenate([np.ravel([[4, *q] for q in due.quads]), np.ravel([[8, *h] for h in due.hexes])])
+    grid = pyvista.UnstructuredGrid(cells, [9] * n_quads + [12] * n_hexes, due.points)
+    grid.cell_data["tag"] = np.array(due.quad_tags + due.hex_tags)
+    grid.cell_data["a vector"] = np.zeros((n_quads + n_hexes, 3))
+    grid.point_data["tag"] = np.array(due.point_tags)
+    grid.field_data["time"] = [1.5]
+    for version in (42, 51):
+        for binary in (True, False):
+            name = f"vtk-{version}-{'binary' if binary else 'ascii'}.vtk"
+            writer = vtk.vtkUnstructuredGridWriter()
+            writer.SetFileName(str(directory / name))
+            writer.SetInputData(grid)
+            writer.SetFileVersion(version)
+            writer.SetFileTypeToBinary() if binary else writer.SetFileTypeToASCII()
+            assert writer.Write()
+            yield name, "exact" if binary else "single", "tags", "both"
+    flavours = itertools.product(("ascii", "inline", "raw", "base64"), ("none", "zlib"), (32, 64), ("little", "big"))
+    for mode, compressor, header, order in flavours:
+        if mode == "ascii" and (compressor, header, order) != ("none", 32, "little"):
+            continue
+        name = f"vtk-{mode}-{compressor}-{header}-{order}.vtu"
+        writer = vtk.vtkXMLUnstructuredGridWriter()
+        writer.SetFileName(str(directory / name))
+        writer.SetInputData(grid)
+        writer.SetDataMode({"ascii": 0, "inline": 1}.get(mode, 2))
+        writer.SetEncodeAppendedData(mode == "base64")
+        writer.SetCompressorTypeToZLib() if compressor == "zlib" else writer.SetCompressorTypeToNone()
+        writer.SetHeaderTypeToUInt32() if header == 32 else writer.SetHeaderTypeToUInt64()
+        writer.SetByteOrderToBigEndian() if order == "big" else writer.SetByteOrderToLittleEndian()
+        # Several zlib blocks even for a small mesh.
+        writer.SetBlockSize(64)
+        assert writer.Write()
+        yield name, "single" if mode == "ascii" else "exact", "tags", "both"
+    surface = pyvista.PolyData(due.points, np.ravel([[4, *q] for q in due.quads]))
+    surface.cell_data["tag"] = np.array(due.quad_tags)
+    for binary in (True, False):
+        kind = "binary" if binary else "ascii"
+        surface.save(directory / f"pyvista-{kind}.vtp", binary=binary)
+        yield f"pyvista-{kind}.vtp", "exact" if binary else "single", "tags", "quads"
+        surface.save(directory / f"pyvista-{kind}.vtk", binary=binary)
+        yield f"pyvista-{kind}.vtk", "exact" if binary else "single", "tags", "quads"
+        surface.save(directory / f"pyvista-{kind}.ply", binary=binary)
+        yield f"pyvista-{kind}.ply", "single", "notags", "quads"
+    surface.save(directory / "pyvista.obj")
+    yield "pyvista.obj", "single", "notags", "quads"
+    voxels = pyvista.UnstructuredGrid(grid)
+    swap = [0, 1, 3, 2, 4, 5, 7, 6]
+    cells = np.ravel([[8, *[h[i] for i in swap]] for h in due.hexes])
+    voxels = pyvista.UnstructuredGrid(cells, [11] * n_hexes, due.points)
+    voxels.cell_data["tag"] = np.array(due.hex_tags)
+    voxels.save(directory / "voxels.vtu")
+    yield "voxels.vtu", "exact", "tags", "hexes"
+
+
+def write_gmsh(directory, due):
+    gmsh.initialize()
+    gmsh.option.setNumber("General.Terminal", 0)
+    gmsh.model.add("chiral")
+    try:
+        # Node numbers with gaps, to be sure that numbers are not taken for positions.
+        home = gmsh.model.addDiscreteEntity(3)
+        numbers = [3 * i + 7 for i in range(len(due.points))]
+        gmsh.model.mesh.addNodes(3, home, numbers, due.points.ravel())
+        gmsh_element = 100
+        for dim, kind, cells, tags in [(2, 3, due.quads, due.quad_tags), (3, 5, due.hexes, due.hex_tags)]:
+            for tag in sorted(set(tags)):
+                entity = gmsh.model.addDiscreteEntity(dim)
+                members = [c for c, t in zip(cells, tags) if t == tag]
+                elements = list(range(gmsh_element, gmsh_element + len(members)))
+                gmsh_element += len(members)
+                gmsh.model.mesh.addElementsByType(entity, kind, elements, [numbers[v] for c in members for v in c])
+                gmsh.model.addPhysicalGroup(dim, [entity], tag)
+        for version in (2.2, 4.1):
+            for binary in (0, 1):
+                gmsh.option.setNumber("Mesh.MshFileVersion", version)
+                gmsh.option.setNumber("Mesh.Binary", binary)
+                name = f"gmsh-{version}-{'binary' if binary else 'ascii'}.msh"
+                gmsh.write(str(directory / name))
+                yield name, "exact" if binary else "single", "tags", "both"
+        # In these every entity is to be saved, not only what is in a physical group (nothing changes here but the names).
+        gmsh.option.setNumber("Mesh.SaveAll", 1)
+        for binary in (0, 1):
+            gmsh.option.setNumber("Mesh.Binary", binary)
+            name = f"gmsh-{'binary' if binary else 'ascii'}.vtk"
+            gmsh.write(str(directory / name))
+            yield name, "single", "notags", "both"
+        gmsh.option.setNumber("Mesh.Binary", 0)
+        for name, cells in [("gmsh.mesh", "both"), ("gmsh.inp", "both"), ("gmsh.off", "quads")]:
+            gmsh.write(str(directory / name))
+            yield name, "single", "notags", cells
+    finally:
+        gmsh.finalize()
+
+
+def main():
+    mode, directory = sys.argv[1], pathlib.Path(sys.argv[2])
+    if mode == "check":
+        check(directory)
+        return
+    due = load_expected(directory)
+    for writer in (write_meshio, write_pyvista, write_gmsh):
+        for line in writer(directory, due):
+            print(*line)
+
+
+main()

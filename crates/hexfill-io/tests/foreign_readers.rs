@@ -1,0 +1,178 @@
+//! Other programs read what is written here, and what they write is read here: meshio, PyVista (VTK) and Gmsh, from PyPI,
+//! in a virtual environment under the target directory. The work on their side is in `foreign_readers.py`.
+//!
+//! Skipped, with the reason printed, only where the packages cannot be installed; `HEXFILL_FOREIGN=require` makes that a
+//! failure, `HEXFILL_FOREIGN=skip` skips. Gmsh needs some X libraries (see the message it gives).
+
+mod common;
+
+use hexfill_io::{Encoding, Format, MeshData, read_path, write_path_with};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// What is installed; pinned, so that a new release cannot break the build.
+const PACKAGES: [&str; 4] = ["meshio==5.3.5", "numpy==2.4.6", "pyvista==0.49.1", "gmsh==4.15.2"];
+
+fn run(command: &mut Command) -> Result<Output, String> {
+    let output = command.output().map_err(|e| format!("{command:?}: {e}"))?;
+    if output.status.success() {
+        return Ok(output);
+    }
+    let (out, err) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    Err(format!("{command:?} failed:\n{out}\n{err}"))
+}
+
+/// The interpreter of the virtual environment, made on first use.
+fn python() -> Result<PathBuf, String> {
+    let home = Path::new(env!("CARGO_TARGET_TMPDIR")).join("foreign-venv");
+    let python = home.join("bin").join("python");
+    let stamp = home.join("installed.txt");
+    if std::fs::read_to_string(&stamp).is_ok_and(|s| s == PACKAGES.join("\n")) {
+        return Ok(python);
+    }
+    run(Command::new("python3").arg("-m").arg("venv").arg("--clear").arg(&home))?;
+    run(Command::new(&python).args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"]).args(PACKAGES))?;
+    std::fs::write(&stamp, PACKAGES.join("\n")).map_err(|e| e.to_string())?;
+    Ok(python)
+}
+
+fn script(python: &Path, mode: &str, directory: &Path) -> String {
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests").join("foreign_readers.py");
+    match run(Command::new(python).arg(script).arg(mode).arg(directory)) {
+        Ok(output) => String::from_utf8_lossy(&output.stdout).into_owned(),
+        Err(e) => panic!("{e}"),
+    }
+}
+
+/// The mesh in all formats, as `NAME.EXTENSION`, and as `expected.json`.
+fn write_all(directory: &Path) {
+    let mesh = common::chiral();
+    write_path_with(&directory.join("expected.json"), None, &mesh, Encoding::Text).unwrap();
+    for format in Format::ALL {
+        for encoding in [Encoding::Text, Encoding::Binary] {
+            if encoding == Encoding::Binary && !format.has_binary() {
+                continue;
+            }
+            let mut mesh = common::chiral_for(format);
+            if matches!(format, Format::Msh22 | Format::Msh41) {
+                // meshio 5.3.5 splits element data by the wrong lengths when there are several kinds of elements
+                // (a block counts as its two members), so data are tested on hexes alone.
+                let only_hexes = MeshData { quads: Vec::new(), quad_tags: None, ..mesh.clone() };
+                let path = directory.join(format!("{format}-hexes.msh"));
+                write_path_with(&path, Some(format), &only_hexes, encoding).unwrap();
+                mesh.hex_data.clear();
+            }
+            let binary = if encoding == Encoding::Binary { "-binary" } else { "" };
+            let extension = if format == Format::Msh41 { "msh" } else { format.extensions()[0] };
+            let path = directory.join(format!("{format}{binary}.{extension}"));
+            write_path_with(&path, Some(format), &mesh, encoding).unwrap();
+            // The surface alone, which is what most files will be.
+            let path = directory.join(format!("{format}{binary}-surface.{extension}"));
+            write_path_with(&path, Some(format), &mesh.surface_only(), encoding).unwrap();
+        }
+    }
+}
+
+/// A hex or quad is the same whatever corner comes first; its orientation is kept by comparing over rotations only.
+fn hex_key(hex: &[u32; 8]) -> [u32; 8] {
+    let rotations = &hexfill_mesh::cube::symmetries()[..24];
+    rotations.iter().map(|s| s.map(|i| hex[i])).min().unwrap()
+}
+
+fn quad_key(quad: &[u32; 4]) -> [u32; 4] {
+    let mut quad = *quad;
+    let start = (0..4).min_by_key(|&k| quad[k]).unwrap();
+    quad.rotate_left(start);
+    quad
+}
+
+fn sorted<T: Ord>(items: impl Iterator<Item = T>) -> Vec<T> {
+    let mut items: Vec<T> = items.collect();
+    items.sort();
+    items
+}
+
+/// Compares node sets, connectivity with orientation, and tags, after matching the points by position.
+fn compare(found: &MeshData, due: &MeshData, exact: bool, tags: bool, what: &str) {
+    assert_eq!(found.points.len(), due.points.len(), "{what}");
+    let tolerance = if exact { 0.0 } else { 1e-5 };
+    let map: Vec<u32> = found
+        .points
+        .iter()
+        .map(|p| {
+            let same = |q: &[f64; 3]| (0..3).all(|k| (p[k] - q[k]).abs() <= tolerance);
+            due.points.iter().position(same).unwrap_or_else(|| panic!("{what}: {p:?} is no point")) as u32
+        })
+        .collect();
+    let quads = |m: &MeshData, map: &dyn Fn(u32) -> u32| {
+        sorted(
+            m.quads
+                .iter()
+                .enumerate()
+                .map(|(i, q)| (quad_key(&q.map(map)), m.quad_tags.as_ref().map_or(0, |t| if tags { t[i] } else { 0 }))),
+        )
+    };
+    let hexes = |m: &MeshData, map: &dyn Fn(u32) -> u32| {
+        sorted(
+            m.hexes
+                .iter()
+                .enumerate()
+                .map(|(i, h)| (hex_key(&h.map(map)), m.hex_tags.as_ref().map_or(0, |t| if tags { t[i] } else { 0 }))),
+        )
+    };
+    let there = |v: u32| map[v as usize];
+    assert_eq!(quads(found, &there), quads(due, &|v| v), "quads of {what}");
+    assert_eq!(hexes(found, &there), hexes(due, &|v| v), "hexes of {what}");
+}
+
+#[test]
+fn other_programs_agree() {
+    let wish = std::env::var("HEXFILL_FOREIGN").unwrap_or_default();
+    if wish == "skip" {
+        println!("skipped: HEXFILL_FOREIGN=skip");
+        return;
+    }
+    let python = match python() {
+        Ok(python) => python,
+        Err(reason) if wish == "require" => panic!("{reason}"),
+        Err(reason) => {
+            println!("SKIPPED: meshio, PyVista and Gmsh cannot be installed here: {reason}");
+            return;
+        }
+    };
+    let directory = Path::new(env!("CARGO_TARGET_TMPDIR")).join("foreign");
+    let _ = std::fs::remove_dir_all(&directory);
+    std::fs::create_dir_all(&directory).unwrap();
+    write_all(&directory);
+    let report = script(&python, "check", &directory);
+    print!("{report}");
+    let checks = report.lines().filter(|l| l.starts_with("ok ")).count();
+    assert!(checks >= 40, "only {checks} files were read by other programs");
+
+    let theirs = directory.join("theirs");
+    std::fs::create_dir_all(&theirs).unwrap();
+    std::fs::copy(directory.join("expected.json"), theirs.join("expected.json")).unwrap();
+    // One file a line: name, "exact" or "single" precision, whether tags are in it, whether quads and hexes are.
+    let list = script(&python, "write", &theirs);
+    let mesh = common::chiral();
+    let mut count = 0;
+    for line in list.lines() {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let [name, precision, tags, cells] = words[..] else { panic!("{line}") };
+        let found = read_path(&theirs.join(name), None).unwrap_or_else(|e| panic!("{e}"));
+        let mut due = mesh.clone();
+        match cells {
+            "both" => {}
+            "quads" => due = due.surface_only(),
+            "hexes" => {
+                due.quads.clear();
+                due.quad_tags = None;
+            }
+            other => panic!("{other}"),
+        }
+        compare(&found, &due, precision == "exact", tags == "tags", name);
+        count += 1;
+    }
+    println!("{count} files of other programs were read");
+    assert!(count >= 25, "{list}");
+}
