@@ -260,26 +260,27 @@ impl<'a> HexCanonizer<'a> {
     pub fn canonical(&mut self, hexes: &[HexId], frames: Frames) -> HexCanonical {
         let candidates = self.candidates(hexes, frames);
         let Self { walker, orbits, place, .. } = self;
-        orbits.reset(48 * walker.mesh.n_hexes(), candidates.iter().map(|f| f.index()));
-        let mut flag = candidates[0];
-        let mut best = walker.code(flag);
+        // Orbits are kept by position among the candidates: all 48 flags of every hex would take far more memory than the mesh.
+        orbits.reset(candidates.len(), 0..candidates.len());
+        let mut first = 0;
+        let mut best = walker.code(candidates[first]);
         let mut best_entered = walker.entered.clone();
-        for &other in &candidates[1..] {
-            if orbits.is_done(other.index()) || orbits.same(other.index(), flag.index()) {
+        for other in 1..candidates.len() {
+            if orbits.is_done(other) || orbits.same(other, first) {
                 continue;
             }
-            match walker.improve(other, &mut best) {
-                Ordering::Greater => orbits.finish(other.index()),
+            match walker.improve(candidates[other], &mut best) {
+                Ordering::Greater => orbits.finish(other),
                 Ordering::Less => {
-                    orbits.finish(flag.index());
-                    flag = other;
+                    orbits.finish(first);
+                    first = other;
                     best_entered.clone_from(&walker.entered);
                 }
                 Ordering::Equal => merge_by(orbits, place, &best_entered, &walker.entered, &candidates),
             }
         }
-        let flags = candidates.into_iter().filter(|f| orbits.same(f.index(), flag.index())).collect();
-        HexCanonical { code: best, flag, flags }
+        let flags = (0..candidates.len()).filter(|&i| orbits.same(i, first)).map(|i| candidates[i]).collect();
+        HexCanonical { code: best, flag: candidates[first], flags }
     }
 
     /// The flags of the rarest kind; every test is an invariant.
@@ -321,7 +322,7 @@ fn merge_by(
     for (i, (h, _)) in from.iter().enumerate() {
         place[h.index()] = i as u32;
     }
-    for &flag in candidates {
+    for (position, flag) in candidates.iter().enumerate() {
         let i = place[flag.hex.index()] as usize;
         let ((_, source), (image, target)) = (from[i], to[i]);
         // Corner source[k] of the hex goes to corner target[k] of its image.
@@ -331,7 +332,9 @@ fn merge_by(
         }
         let frame = tables.frames[usize::from(flag.frame)].map(|k| corner[usize::from(k)]);
         let image = HexFlag { hex: image, frame: tables.index[octal(&frame)] };
-        orbits.union(flag.index(), image.index());
+        // The candidates are ascending and closed under automorphisms.
+        let image = candidates.binary_search_by_key(&image.index(), |f| f.index());
+        orbits.union(position, image.expect("an automorphism keeps the kind of a flag"));
     }
 }
 

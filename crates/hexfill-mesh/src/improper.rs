@@ -159,4 +159,71 @@ mod tests {
             assert_eq!(!is_proper(&s), expected, "torus {n} {m} {shift}");
         }
     }
+
+    /// Whether the graph stays connected when any two vertices are taken out: the definition, tried on all pairs.
+    fn stays_connected(s: &QuadSurface) -> bool {
+        let n = s.n_vertices();
+        let mut neighbours = vec![Vec::new(); n];
+        for d in s.darts() {
+            neighbours[s.origin(d).index()].push(s.target(d).index());
+        }
+        (0..n).all(|a| {
+            (0..a).all(|b| {
+                let mut seen = vec![false; n];
+                (seen[a], seen[b]) = (true, true);
+                let start = (0..n).find(|&v| !seen[v]).unwrap();
+                seen[start] = true;
+                let mut stack = vec![start];
+                while let Some(v) = stack.pop() {
+                    for &w in &neighbours[v] {
+                        if !std::mem::replace(&mut seen[w], true) {
+                            stack.push(w);
+                        }
+                    }
+                }
+                seen.iter().all(|&s| s)
+            })
+        })
+    }
+
+    #[test]
+    fn proper_spheres_are_the_three_connected_ones() {
+        use crate::generate::Random;
+        let mut counts = [0, 0];
+        for seed in 0..400 {
+            // A random simple quadrangulation: two-valent vertices are put into quads, then edges slide to the next long diagonal of their hexagon.
+            let mut random = Random::new(seed);
+            let mut quads = crate::cube::FACETS.map(|f| f.map(|v| v as u32)).to_vec();
+            let n = 8 + random.below(7) as u32;
+            for v in 8..n {
+                let i = random.below(quads.len());
+                let mut q = quads[i];
+                q.rotate_left(random.below(2));
+                let [a, b, c, d] = q;
+                quads[i] = [a, b, c, v];
+                quads.push([a, v, c, d]);
+            }
+            for _ in 0..60 {
+                let (i, j) = (random.below(quads.len()), random.below(quads.len()));
+                let (mut p, mut q) = (quads[i], quads[j]);
+                p.rotate_left(random.below(4));
+                q.rotate_left(random.below(4));
+                if i != j && p[0] == q[1] && p[1] == q[0] {
+                    let ([a, d, e, f], [_, _, b, c]) = (p, q);
+                    let mut slid = quads.clone();
+                    (slid[i], slid[j]) = ([a, b, e, f], [b, c, d, e]);
+                    if QuadSurface::try_new(n as usize, &slid).is_ok_and(|s| s.is_sphere() && s.reversed().is_empty()) {
+                        quads = slid;
+                    }
+                }
+            }
+            let s = QuadSurface::try_new(n as usize, &quads).unwrap();
+            assert_eq!(is_three_connected(&s), stays_connected(&s), "{quads:?}");
+            counts[usize::from(is_three_connected(&s))] += 1;
+        }
+        for s in (6..=11).flat_map(crate::generate::all_spheres) {
+            assert!(stays_connected(&s));
+        }
+        assert!(counts.iter().all(|&c| c >= 5), "both kinds are met: {counts:?}");
+    }
 }

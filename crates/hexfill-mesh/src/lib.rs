@@ -42,8 +42,8 @@ pub use shelling::{greedy_shelling, is_shelling};
 pub use signature_text::SignatureError;
 pub use surface::{FaceSides, QuadSurface, SurfaceError};
 pub use surface_signature::{
-    SurfaceAutomorphism, parse_surface_signature, surface_automorphisms, surface_isomorphism, surface_signature,
-    surface_symmetry_order,
+    CanonicalSurface, SurfaceAutomorphism, canonical_surface, parse_surface_signature, surface_automorphisms,
+    surface_isomorphism, surface_signature, surface_symmetry_order,
 };
 pub use valence::{
     EdgeValence, MeshStatistics, degree_histogram, edge_valences, euler_characteristic, interior_singular_edges,

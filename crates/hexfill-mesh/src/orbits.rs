@@ -4,17 +4,17 @@
 
 #[derive(Default)]
 pub(crate) struct Orbits {
-    /// By flag index, which may exceed 2^32.
+    /// By index of the flag, which may exceed 2^32.
     parent: Vec<usize>,
     done: Vec<bool>,
 }
 
 impl Orbits {
-    /// Makes each of the given indices (below `n`) an orbit of its own; the table is allocated once.
+    /// Makes each of the given indices (below `n`) an orbit of its own; the table is kept from one use to the next.
     pub fn reset(&mut self, n: usize, indices: impl Iterator<Item = usize>) {
-        if self.parent.is_empty() {
-            self.parent = vec![0; n];
-            self.done = vec![false; n];
+        if self.parent.len() < n {
+            self.parent.resize(n, 0);
+            self.done.resize(n, false);
         }
         for i in indices {
             self.parent[i] = i;

@@ -59,19 +59,45 @@ impl Form {
         let mirrored = Self::of(surface, Handedness::Only { mirrored: true });
         if mirrored.key() < direct.key() { mirrored } else { direct }
     }
+
+    fn signature(&self) -> String {
+        let mut text = String::from(PREFIX);
+        for (i, part) in self.parts.iter().enumerate() {
+            if i > 0 {
+                text.push(SEPARATOR);
+            }
+            part.code.iter().for_each(|&number| push_number(&mut text, number));
+        }
+        text
+    }
 }
 
 /// The canonical name of a surface up to isomorphism and reflection. See the module page.
 pub fn surface_signature(surface: &QuadSurface) -> String {
+    Form::smallest(surface).signature()
+}
+
+/// A surface's signature and how the surface lies on the one it names.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct CanonicalSurface {
+    /// As [`surface_signature`].
+    pub signature: String,
+    /// Per vertex of the surface that [`parse_surface_signature`] makes of it: the vertex here.
+    pub vertices: Vec<VertexId>,
+    /// Whether that map turns the surface inside out.
+    pub mirrored: bool,
+}
+
+/// The signature of a surface, with the map from the surface it names: so that what is stored for the name (a filling, say) can be carried over.
+pub fn canonical_surface(surface: &QuadSurface) -> CanonicalSurface {
     let form = Form::smallest(surface);
-    let mut text = String::from(PREFIX);
-    for (i, part) in form.parts.iter().enumerate() {
-        if i > 0 {
-            text.push(SEPARATOR);
-        }
-        part.code.iter().for_each(|&number| push_number(&mut text, number));
+    let mut walker = Walker::new(surface);
+    let mut vertices = Vec::with_capacity(surface.n_used_vertices());
+    for part in &form.parts {
+        walker.code(part.flag);
+        vertices.extend_from_slice(&walker.order);
     }
-    text
+    CanonicalSurface { signature: form.signature(), vertices, mirrored: form.parts[0].flag.mirrored }
 }
 
 /// The surface that a signature names, vertices and quads in canonical order. Any well-formed code is read, smallest or not.

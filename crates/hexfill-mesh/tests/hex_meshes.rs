@@ -3,9 +3,9 @@
 use hexfill_mesh::cube::POSITIONS;
 use hexfill_mesh::generate::{Random, grid, grid_mesh_of, mirrored_mesh, shuffled_mesh};
 use hexfill_mesh::{
-    Facet, HexId, HexMesh, QuadSurface, SignatureError, VertexId, disagreement, greedy_shelling, hex_automorphisms,
-    hex_isomorphism, hex_signature, hex_symmetry_order, is_shelling, mesh_statistics, oriented_hex_signature,
-    parse_hex_signature, sheets, surface_signature,
+    Chord, Facet, HexId, HexMesh, QuadSurface, SignatureError, VertexId, chords, disagreement, euler_characteristic,
+    greedy_shelling, hex_automorphisms, hex_isomorphism, hex_signature, hex_symmetry_order, is_shelling,
+    mesh_statistics, oriented_hex_signature, parse_hex_signature, sheets, surface_signature,
 };
 use proptest::prelude::*;
 use std::collections::BTreeSet;
@@ -203,6 +203,36 @@ fn check(mesh: &HexMesh, seed: u64) {
     assert_eq!(chiral, group.iter().all(|a| a.reflection == Some(false)));
 }
 
+/// The boundary as a surface with the vertex ids of the mesh, if it is one.
+fn boundary(mesh: &HexMesh) -> Option<QuadSurface> {
+    let quads: Vec<[u32; 4]> = mesh.boundary_quads().iter().map(|q| q.map(|v| v.0)).collect();
+    QuadSurface::try_new(mesh.n_vertices(), &quads).ok()
+}
+
+/// The curves in which the sheets end are the chords of the boundary.
+fn check_sheets(mesh: &HexMesh) {
+    let all = sheets(mesh);
+    assert_eq!(all.iter().map(|s| s.crossings.len()).sum::<usize>(), 3 * mesh.n_hexes());
+    let mut ends: Vec<Chord> = all.iter().flat_map(|s| s.boundary.clone()).collect();
+    ends.sort_by_key(|c| c.crossings[0]);
+    if let Some(surface) = boundary(mesh) {
+        assert_eq!(ends, chords(&surface));
+    }
+    assert_eq!(ends.iter().map(|c| c.crossings.len()).sum::<usize>(), 2 * mesh.boundary_facets().count());
+}
+
+/// Every beginning of a shelling is a ball as far as its boundary and Euler characteristic tell. So few cubes that form a ball are shellable,
+/// and greed finds it.
+fn check_shelling(mesh: &HexMesh) {
+    let is_ball = |m: &HexMesh| boundary(m).is_some_and(|s| s.is_sphere()) && euler_characteristic(m) == 1;
+    let order = greedy_shelling(mesh);
+    assert_eq!(order.is_some(), is_ball(mesh));
+    for n in 1..=order.as_ref().map_or(0, Vec::len) {
+        let hexes: Vec<[u32; 8]> = order.iter().flatten().take(n).map(|&h| mesh.hex(h).map(|v| v.0)).collect();
+        assert!(is_ball(&HexMesh::try_new(mesh.n_vertices(), &hexes).unwrap()));
+    }
+}
+
 #[test]
 fn every_small_complex() {
     let levels = complexes(5);
@@ -212,6 +242,10 @@ fn every_small_complex() {
     for (i, mesh) in levels.iter().flatten().enumerate() {
         check(mesh, i as u64);
         assert_eq!(hex_automorphisms(mesh).unwrap().len(), brute_force_automorphisms(mesh));
+    }
+    for mesh in levels.iter().flatten() {
+        check_sheets(mesh);
+        check_shelling(mesh);
     }
     // With mirror images distinct.
     for (level, expected) in levels.iter().zip([1, 1, 7, 29]) {
@@ -226,10 +260,7 @@ fn every_small_complex() {
 #[test]
 fn boundaries_of_equal_meshes_are_equal() {
     for (i, mesh) in complexes(4)[3].iter().enumerate() {
-        let boundary = |m: &HexMesh| {
-            let quads: Vec<[u32; 4]> = m.boundary_quads().iter().map(|q| q.map(|v| v.0)).collect();
-            QuadSurface::try_new(m.n_vertices(), &quads).map(|s| surface_signature(&s)).ok()
-        };
+        let boundary = |m: &HexMesh| boundary(m).map(|s| surface_signature(&s));
         assert_eq!(boundary(mesh), boundary(&shuffled_mesh(mesh, i as u64).0));
     }
 }
@@ -379,7 +410,10 @@ proptest! {
 
     #[test]
     fn random_cells_keep_their_name(n in 1usize..40, seed: u64) {
-        check(&random_cells(n, seed), seed);
+        let mesh = random_cells(n, seed);
+        check(&mesh, seed);
+        check_sheets(&mesh);
+        check_shelling(&mesh);
     }
 
     #[test]

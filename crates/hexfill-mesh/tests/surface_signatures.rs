@@ -5,8 +5,8 @@ use hexfill_mesh::generate::{
     refined, schneiders_pyramid, shuffled_surface, torus,
 };
 use hexfill_mesh::{
-    QuadSurface, SignatureError, VertexId, parse_surface_signature, surface_automorphisms, surface_isomorphism,
-    surface_signature, surface_symmetry_order,
+    CanonicalSurface, QuadSurface, SignatureError, VertexId, canonical_surface, parse_surface_signature,
+    surface_automorphisms, surface_isomorphism, surface_signature, surface_symmetry_order,
 };
 use proptest::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
@@ -22,6 +22,29 @@ fn unoriented(surface: &QuadSurface, map: impl Fn(VertexId) -> VertexId) -> BTre
         q
     };
     surface.quads().iter().map(|q| canonical(q.map(&map))).collect()
+}
+
+/// The quads in their sense, each from its smallest vertex.
+fn oriented(surface: &QuadSurface) -> BTreeSet<[VertexId; 4]> {
+    surface.quads().iter().map(|q| from_smallest(*q)).collect()
+}
+
+fn from_smallest(mut q: [VertexId; 4]) -> [VertexId; 4] {
+    let first = (0..4).min_by_key(|&i| q[i]).unwrap();
+    q.rotate_left(first);
+    q
+}
+
+/// The quads of a named surface, carried over to the surface whose canonical form is given.
+fn carried(named: &QuadSurface, c: &CanonicalSurface) -> BTreeSet<[VertexId; 4]> {
+    let carry = |q: &[VertexId; 4]| {
+        let mut image = q.map(|v| c.vertices[v.index()]);
+        if c.mirrored {
+            image.reverse();
+        }
+        from_smallest(image)
+    };
+    named.quads().iter().map(carry).collect()
 }
 
 /// Automorphisms of the graph by plain backtracking over vertices. On a 3-connected sphere each of them is one of the surface (Whitney 1932).
@@ -69,20 +92,19 @@ fn every_small_sphere() {
             assert_eq!(surface_signature(&back), name);
             assert!(surface_isomorphism(s, &back).is_some());
 
+            for surface in [s, &s.inverted(), &shuffled_surface(s, 7, i % 2 == 0).0] {
+                let c = canonical_surface(surface);
+                assert_eq!(c.signature, name);
+                assert_eq!(carried(&back, &c), oriented(surface));
+            }
+
             let group = surface_automorphisms(s);
             assert_eq!(group.len() as u128, surface_symmetry_order(s));
             assert_eq!(group.len(), graph_automorphisms(s), "{name}");
             assert!(group[0].vertices.iter().enumerate().all(|(v, w)| v == w.index()) && !group[0].reflection);
             let distinct: BTreeSet<&Vec<VertexId>> = group.iter().map(|a| &a.vertices).collect();
             assert_eq!(distinct.len(), group.len());
-            let oriented: BTreeSet<[VertexId; 4]> = s
-                .quads()
-                .iter()
-                .map(|q| {
-                    let first = (0..4).min_by_key(|&i| q[i]).unwrap();
-                    std::array::from_fn(|i| q[(first + i) % 4])
-                })
-                .collect();
+            let oriented = oriented(s);
             for a in &group {
                 assert_eq!(unoriented(s, |v| a.vertices[v.index()]), unoriented(s, |v| v));
                 // A reflection, and only a reflection, turns quads over.
@@ -91,9 +113,7 @@ fn every_small_sphere() {
                     if a.reflection {
                         image.reverse();
                     }
-                    let first = (0..4).min_by_key(|&i| image[i]).unwrap();
-                    image.rotate_left(first);
-                    assert!(oriented.contains(&image));
+                    assert!(oriented.contains(&from_smallest(image)));
                 }
             }
         }
@@ -167,6 +187,11 @@ fn several_components_are_mirrored_together() {
     assert_eq!(surface_symmetry_order(&three), 2 * (24 * 24 * 2) * 8);
     assert!(surface_isomorphism(&three, &joined(&[&cube, &spindle, &cube])).is_some());
     assert!(surface_isomorphism(&three, &joined(&[&cube, &spindle, &spindle])).is_none());
+
+    for s in [&both, &three, &three.inverted()] {
+        let c = canonical_surface(s);
+        assert_eq!(carried(&parse_surface_signature(&c.signature).unwrap(), &c), oriented(s));
+    }
 
     let left = torus(13, 1, 5).unwrap();
     let right = left.inverted();
