@@ -132,6 +132,26 @@ impl Complex {
         self.cubes().iter().map(|c| c.map(u32::from)).collect()
     }
 
+    /// A small mesh as a complex, vertices renumbered in order of appearance.
+    ///
+    /// # Errors
+    /// As [`from_cubes`](Self::from_cubes).
+    pub fn from_hex_mesh(mesh: &HexMesh) -> Result<Self, EnumerateError> {
+        let mut names = std::collections::HashMap::new();
+        let cubes: Vec<[u8; 8]> = mesh
+            .hexes()
+            .iter()
+            .take(MAX_CUBES + 1)
+            .map(|hex| {
+                hex.map(|v| {
+                    let next = names.len().min(u8::MAX as usize) as u8;
+                    *names.entry(v).or_insert(next)
+                })
+            })
+            .collect();
+        Self::from_cubes(&cubes)
+    }
+
     /// The same as a [`HexMesh`].
     ///
     /// # Errors

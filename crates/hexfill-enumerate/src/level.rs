@@ -12,7 +12,7 @@ use crate::hashset::{HashKey, ShardedSet};
 use crate::params::Params;
 use crate::tally::{Counter, Tally};
 use crate::targets::{Found, Wanted};
-use hexfill_mesh::Context;
+use hexfill_mesh::{Context, StopReason};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -133,6 +133,9 @@ fn grow<K: HashKey>(
             }
             if let Some(reason) = ctx.stop() {
                 return Err(EnumerateError::Stopped { reason });
+            }
+            if ctx.memory_limit.is_some_and(|limit| set.bytes() > limit) {
+                return Err(EnumerateError::Stopped { reason: StopReason::MemoryLimit });
             }
             for code in &parents[start..parents.len().min(start + BLOCK)] {
                 let parent = code.decode()?;

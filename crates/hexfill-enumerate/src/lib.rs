@@ -1,4 +1,26 @@
-//! Every hex mesh with n cubes, without isomorphic copies (BruteBuilder)
+//! Every hex mesh with n cubes, one of each isomorphism class: J.-C. Weill's BruteBuilder ("A tentative to break the
+//! pyramid's code"), made exact and fast.
+//!
+//! * A [`Complex`] is a few hundred bytes and is extended by one cube in every legal way, under one of two
+//!   [rules](Rule): [`extend_strict`] and [`extend_weill`].
+//! * [`canonical`] gives its canonical [`Code`], the order of its automorphism group and more in about a microsecond.
+//! * Two engines: level by level with a set of hashes ([`all_levels`]), and canonical augmentation without memory
+//!   ([`Plan`], [`run_whole`]). They share the extension and the canonical form and nothing else; the exact mass
+//!   formula ([`Tally::mass_balances`]) checks both.
+//! * The work falls into [chunks](Chunk) that add up; drivers are threads, job arrays and MPI, with a [`Ledger`] that
+//!   survives being killed.
+//!
+//! ```
+//! use hexfill_enumerate::{LevelOptions, Params, Plan, Rule, Wanted, run_whole};
+//! use hexfill_mesh::Context;
+//!
+//! let ctx = Context::default();
+//! let plan = Plan::prepare(&Params::new(5, Rule::Strict), &LevelOptions::default(), &ctx)?;
+//! let (tally, _) = run_whole(&plan, 1, Wanted::default(), &ctx)?;
+//! assert_eq!((tally.classes, tally.balls), (240, 60));
+//! assert!(tally.mass_balances());
+//! # Ok::<(), hexfill_enumerate::EnumerateError>(())
+//! ```
 
 mod augment;
 mod boundary;
@@ -28,7 +50,7 @@ pub use driver::{Checkpointed, chunks_of_part, default_chunks, run_checkpointed,
 pub use error::EnumerateError;
 pub use ledger::{Header, Ledger, Merged, Record, ledger_path, merge, read_ledger, read_ledgers};
 pub use level::{Keep, Level, LevelOptions, all_levels, first_level, next_level};
-pub use listing::{ListFormat, line, mesh_of, weill_order};
+pub use listing::{ListFormat, line, mesh_of, mirror_lines, weill_order};
 pub use params::{Filter, Params, Rule};
 pub use report::{histograms, table};
 pub use shape::{Selection, Shape, parse_range, shape};

@@ -1,18 +1,21 @@
 //! How an object is written on one line, and the order of cubes that rule `weill` needs.
 
-use crate::canonical::Code;
+use crate::canonical::{Code, canonical};
 use crate::complex::{Complex, FREE, side_set_of};
 use crate::error::EnumerateError;
 use crate::params::Rule;
 use crate::weill::{could_be_last, edges_are_manifold};
+use hexfill_mesh::{hex_signature, oriented_hex_signature};
 use std::fmt::Write;
 use std::str::FromStr;
 
 /// The format of a line.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum ListFormat {
-    /// This crate's canonical code in hexadecimal digits.
+    /// The mesh crate's signature, accepted wherever a mesh is.
     #[default]
+    Signature,
+    /// This crate's canonical code in hexadecimal digits; much faster to write.
     Code,
     /// Numbers: vertices, cubes, then eight 0-based vertices a cube in VTK order. Under rule `weill` the cubes are in an order in which
     /// the rule can have added them.
@@ -24,9 +27,12 @@ impl FromStr for ListFormat {
 
     fn from_str(text: &str) -> Result<Self, EnumerateError> {
         match text {
+            "signature" => Ok(Self::Signature),
             "code" => Ok(Self::Code),
             "hexes" => Ok(Self::Hexes),
-            _ => Err(EnumerateError::BadParameters { why: format!("there is no format {text:?}: code or hexes") }),
+            _ => Err(EnumerateError::BadParameters {
+                why: format!("there is no format {text:?}: signature, code or hexes"),
+            }),
         }
     }
 }
@@ -37,17 +43,45 @@ impl FromStr for ListFormat {
 /// [`EnumerateError::BadCode`] if the code is of no complex, or of none that the rule can make.
 pub fn line(code: &Code, format: ListFormat, rule: Rule) -> Result<String, EnumerateError> {
     match format {
+        ListFormat::Signature => Ok(hex_signature(&code.decode()?.to_hex_mesh()?)?),
         ListFormat::Code => Ok(code.to_text()),
-        ListFormat::Hexes => {
-            let c = mesh_of(code, rule)?;
-            let mut text = format!("{} {}", c.n_vertices(), c.n_cubes());
-            for v in c.cubes().iter().flatten() {
-                // Writing to a string cannot fail.
-                let _ = write!(text, " {v}");
-            }
-            Ok(text)
-        }
+        ListFormat::Hexes => Ok(hexes_text(&mesh_of(code, rule)?)),
     }
+}
+
+/// The lines of an object with mirror images distinct: one, or two if it differs from its mirror image.
+///
+/// Signatures are the oriented ones; a mirrored code is marked, since both have the same.
+///
+/// # Errors
+/// As [`line`]; [`EnumerateError::Signature`] for an object that is not orientable.
+pub fn mirror_lines(code: &Code, format: ListFormat, rule: Rule) -> Result<Vec<String>, EnumerateError> {
+    let c = mesh_of(code, rule)?;
+    let mut out = Vec::new();
+    let images = if canonical(&c).reversing { vec![c] } else { vec![c, mirrored(&c)?] };
+    for (i, image) in images.iter().enumerate() {
+        out.push(match format {
+            ListFormat::Signature => oriented_hex_signature(&image.to_hex_mesh()?)?,
+            ListFormat::Code => code.to_text() + if i == 0 { "" } else { " mirrored" },
+            ListFormat::Hexes => hexes_text(image),
+        });
+    }
+    Ok(out)
+}
+
+/// The mirror image: the same vertices, every cube seen upside down.
+fn mirrored(c: &Complex) -> Result<Complex, EnumerateError> {
+    let cubes: Vec<[u8; 8]> = c.cubes().iter().map(|x| [4, 5, 6, 7, 0, 1, 2, 3].map(|i: usize| x[i])).collect();
+    Complex::from_cubes(&cubes)
+}
+
+fn hexes_text(c: &Complex) -> String {
+    let mut text = format!("{} {}", c.n_vertices(), c.n_cubes());
+    for v in c.cubes().iter().flatten() {
+        // Writing to a string cannot fail.
+        let _ = write!(text, " {v}");
+    }
+    text
 }
 
 /// The complex of a code, its cubes in an order the rule allows.
@@ -112,12 +146,14 @@ fn shares_by_gluing_only(c: &Complex, a: usize) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::canonical::canonical;
+    use hexfill_mesh::parse_hex_signature;
 
     #[test]
     fn lines() {
         let code = canonical(&Complex::cube()).code;
         assert_eq!(line(&code, ListFormat::Hexes, Rule::Strict).unwrap(), "8 1 0 1 2 3 4 5 6 7");
+        let signature = line(&code, ListFormat::Signature, Rule::Strict).unwrap();
+        assert_eq!(parse_hex_signature(&signature).unwrap().n_hexes(), 1);
         assert_eq!(line(&code, ListFormat::Code, Rule::Weill).unwrap(), "01");
         assert!("xyz".parse::<ListFormat>().is_err());
     }

@@ -2,9 +2,9 @@
 
 use hexfill_check::{Judged, Level, Options, Rules, judge};
 use hexfill_enumerate::{
-    Boundary, Code, Complex, Filter, Keep, LevelOptions, MASS_UNIT, Params, Plan, Rule, Selection, StrictOptions,
-    Tally, Target, Wanted, all_levels, canonical, extend_strict, extend_weill, first_level, mesh_of, next_level,
-    run_whole, shape, strict_violations, weill_order, weill_violations,
+    Boundary, Code, Complex, Filter, Keep, LevelOptions, ListFormat, MASS_UNIT, Params, Plan, Rule, Selection,
+    StrictOptions, Tally, Target, Wanted, all_levels, canonical, extend_strict, extend_weill, first_level, line,
+    mesh_of, mirror_lines, next_level, run_whole, shape, strict_violations, weill_order, weill_violations,
 };
 use hexfill_mesh::Context;
 use std::collections::{BTreeMap, BTreeSet};
@@ -334,6 +334,30 @@ fn settings_do_not_change_results() {
     found.selected.sort_unstable();
     assert_eq!((tally.classes, tally.hash_sum), (one[5].0.classes, one[5].0.hash_sum));
     assert_eq!(found, one[5].1);
+}
+
+#[test]
+fn the_signatures_of_the_mesh_crate_tell_the_same_classes_apart() {
+    // Another canonical form, by other code: as many names as classes, and the same groups.
+    for rule in [Rule::Strict, Rule::Weill] {
+        let levels =
+            all_levels(&Params::new(5, rule), &LevelOptions::default(), Wanted::default(), true, &Context::default())
+                .unwrap();
+        for level in &levels {
+            let mut names = BTreeSet::new();
+            for code in &level.codes {
+                let mesh = code.decode().unwrap().to_hex_mesh().unwrap();
+                names.insert(line(code, ListFormat::Signature, rule).unwrap());
+                let group = hexfill_mesh::hex_automorphisms(&mesh).unwrap().len();
+                let back = Complex::from_hex_mesh(&mesh).unwrap();
+                let label = canonical(&back);
+                assert_eq!((label.code, label.automorphisms as usize), (*code, group));
+            }
+            assert_eq!(names.len() as u64, level.tally.classes);
+            let all = level.codes.iter().flat_map(|code| mirror_lines(code, ListFormat::Signature, rule).unwrap());
+            assert_eq!(all.collect::<BTreeSet<_>>().len() as u64, level.tally.classes + level.tally.chiral);
+        }
+    }
 }
 
 #[test]

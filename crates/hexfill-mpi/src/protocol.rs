@@ -4,7 +4,7 @@
 //! given to another worker; a worker that failed gets no more work. So the totals are those of any other run, or the
 //! run ends with the chunks that could not be done.
 
-use hexfill_enumerate::{Chunk, Code, ChunkResult, Found, Tally};
+use hexfill_enumerate::{Chunk, ChunkResult, Code, Found, Tally};
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
@@ -47,7 +47,12 @@ impl TryFrom<Finished> for ChunkResult {
     fn try_from(f: Finished) -> Result<Self, Self::Error> {
         let selected = f.selected.iter().map(|c| c.parse()).collect::<Result<_, _>>()?;
         let targets = f.targets.iter().map(|(i, c)| Ok((*i, c.parse()?))).collect::<Result<_, Self::Error>>()?;
-        Ok(Self { chunk: f.chunk, tally: f.tally, cpu_nanoseconds: f.cpu_nanoseconds, found: Found { selected, targets } })
+        Ok(Self {
+            chunk: f.chunk,
+            tally: f.tally,
+            cpu_nanoseconds: f.cpu_nanoseconds,
+            found: Found { selected, targets },
+        })
     }
 }
 

@@ -7,7 +7,8 @@ use hexfill::Context;
 use hexfill::enumerate::{
     Boundary, Chunk, Code, Complex, EnumerateError, Filter, Found, Header, LevelOptions, ListFormat, Params, Plan,
     Rule, Selection, Tally, Target, Wanted, all_levels, canonical, chunks_of_part, default_chunks, histograms, line,
-    merge, parse_range, read_ledgers, run_checkpointed, run_in_order, shape, strict_violations, table, weill_order,
+    merge, mirror_lines, parse_range, read_ledgers, run_checkpointed, run_in_order, shape, strict_violations, table,
+    weill_order,
 };
 use serde_json::json;
 use std::io::Write;
@@ -60,8 +61,9 @@ pub struct EnumerateArgs {
     /// Write the objects here instead of stdout.
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// How an object is written: code (canonical, one word) or hexes (vertices, cubes, 8 vertices a cube).
-    #[arg(long, default_value = "code", value_name = "FORMAT")]
+    /// How an object is written: signature (accepted wherever a mesh is), code (one word, fastest) or hexes (vertices, cubes,
+    /// 8 vertices a cube).
+    #[arg(long, default_value = "signature", value_name = "FORMAT")]
     format: ListFormat,
     /// Keep a ledger of finished chunks here; the same command goes on where a killed run stopped.
     #[arg(long, value_name = "DIR")]
@@ -88,7 +90,7 @@ enum Action {
         #[arg(short, long, value_name = "FILE")]
         output: Option<PathBuf>,
         /// How an object is written.
-        #[arg(long, default_value = "code", value_name = "FORMAT")]
+        #[arg(long, default_value = "signature", value_name = "FORMAT")]
         format: ListFormat,
     },
     /// Check a checkpoint folder: checksums, sums, mass formula, and some chunks by running them again.
@@ -99,9 +101,9 @@ enum Action {
         #[arg(long, default_value_t = 3, value_name = "N")]
         redo: usize,
     },
-    /// Describe an object (a code, or cubes as "0 1 2 3 4 5 6 7; ...") or the state of a checkpoint folder.
+    /// Describe an object (a signature, a code, or cubes as "0 1 2 3 4 5 6 7; ...") or the state of a checkpoint folder.
     Show {
-        /// Code, cubes or folder.
+        /// Signature, code, cubes or folder.
         what: String,
     },
 }
@@ -177,12 +179,12 @@ impl Output {
     fn write(&mut self, code: &Code) -> Result<(), EnumerateError> {
         let Some(to) = &mut self.to else { return Ok(()) };
         let io = |source| EnumerateError::Io { path: "output".into(), source };
-        let text = line(code, self.format, self.rule)?;
-        writeln!(to, "{text}").map_err(io)?;
-        self.lines += 1;
-        if self.mirror == Mirror::Distinct && !canonical(&code.decode()?).reversing {
-            // The mirror image has the same code: it is marked.
-            writeln!(to, "{text} mirrored").map_err(io)?;
+        let lines = match self.mirror {
+            Mirror::Same => vec![line(code, self.format, self.rule)?],
+            Mirror::Distinct => mirror_lines(code, self.format, self.rule)?,
+        };
+        for text in lines {
+            writeln!(to, "{text}").map_err(io)?;
             self.lines += 1;
         }
         Ok(())
@@ -418,7 +420,11 @@ fn show(what: &str, console: &Console) -> anyhow::Result<Exit> {
     }
     let complex = match what.parse::<Code>() {
         Ok(code) => code.decode()?,
-        Err(_) => parse_cubes(what).with_context(|| format!("{what:?} is no folder, no code and no list of cubes"))?,
+        Err(_) => match hexfill::mesh::parse_hex_signature(what) {
+            Ok(mesh) => Complex::from_hex_mesh(&mesh)?,
+            Err(_) => parse_cubes(what)
+                .with_context(|| format!("{what:?} is no folder, no signature, no code and no list of cubes"))?,
+        },
     };
     let labelling = canonical(&complex);
     let boundary = Boundary::of(&complex);
