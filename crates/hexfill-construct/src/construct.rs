@@ -11,6 +11,7 @@ use crate::matching::light_sides;
 use crate::report::{Report, Route};
 use crate::sigma::sigma;
 use crate::split::{core_points, split_tets};
+use crate::start::start_positions;
 use crate::tets::{InteriorTets, TetComplex, TetRequest, others, tet_edge};
 use hexfill_mesh::{Context, HexMesh, QuadId, QuadSurface, improper_pairs};
 
@@ -85,6 +86,9 @@ pub fn construct(
             Ok(())
         }
     };
+    if let Some(given) = points.map(<[_]>::len).filter(|&n| n != surface.n_vertices()) {
+        return Err(ConstructError::Points { given, needed: surface.n_vertices() });
+    }
     stage("colouring")?;
     let colours = match options.route {
         RouteChoice::Auto => colouring(surface),
@@ -157,9 +161,28 @@ pub fn construct(
     debug_assert_eq!(hexes.len(), report.n_hexes());
     stage("mesh")?;
     let n_vertices = core.end as usize;
-    drop((complex, cut, triangles));
+    let start = points.map(|p| start_positions(surface, p, &layer, library, &complex, &core));
+    drop((complex, core, cut, triangles));
     let mesh = HexMesh::try_new(n_vertices, &hexes)?;
-    Ok(Construction { mesh, report, start: None })
+    Ok(Construction { mesh, report, start })
+}
+
+/// The triangles that tetrahedra of the interior have to fill, outward, as vertices of the surface: two a quad. For
+/// making tetrahedra elsewhere (see [`crate::GivenTets`]).
+///
+/// # Errors
+/// As [`construct`], for the steps before the tetrahedra.
+pub fn core_triangles(
+    surface: &QuadSurface,
+    route: RouteChoice,
+    ctx: &Context<'_>,
+) -> Result<Vec<[u32; 3]>, ConstructError> {
+    let colours = match route {
+        RouteChoice::Auto => colouring(surface),
+        RouteChoice::Erickson => all_black(surface),
+    };
+    let sides = light_sides(surface, ctx)?;
+    Ok(Layer::new(surface, &colours, &sides, CellLibrary::built_in())?.triangles())
 }
 
 /// Per dart: the edge of the complex under it.

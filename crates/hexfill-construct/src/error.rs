@@ -53,6 +53,14 @@ pub enum ConstructError {
         /// What differs.
         reason: String,
     },
+    /// The positions are not one a vertex.
+    #[error("{given} positions given for {needed} vertices")]
+    Points {
+        /// Number of positions.
+        given: usize,
+        /// Number of vertices.
+        needed: usize,
+    },
     /// No cell for a pattern.
     #[error("the cell library has no cell for pattern {pattern}")]
     NoCell {

@@ -82,7 +82,7 @@ pub enum Role {
     /// Point of a cut triangle on the side of the diagonal.
     FacePair(u8),
     /// A point inside the cell.
-    Interior(u8),
+    Interior(u16),
 }
 
 impl fmt::Display for Role {
@@ -119,6 +119,9 @@ impl FromStr for Role {
         if letter == 'd' && rest.is_empty() {
             return Ok(Self::Diagonal);
         }
+        if letter == 'p' && suffix.is_empty() {
+            return digits.parse().map(Self::Interior).map_err(|_| bad());
+        }
         let k: u8 = digits.parse().map_err(|_| bad())?;
         Ok(match (letter, suffix) {
             ('o', "") => Self::Outer(k),
@@ -134,7 +137,6 @@ impl FromStr for Role {
             ('f', "") => Self::Face(k),
             ('f', "l") => Self::FaceLone(k),
             ('f', "p") => Self::FacePair(k),
-            ('p', "") => Self::Interior(k),
             _ => return Err(bad()),
         })
     }
@@ -182,6 +184,16 @@ impl Symmetry {
             Role::FaceLone(k) => Role::FaceLone(t(k)),
             Role::FacePair(k) => Role::FacePair(t(k)),
             Role::Interior(k) => Role::Interior(k),
+        }
+    }
+
+    /// Where a position of the template goes (corner 0 at (-1, -1), 1 at (-1, 1), 2 at (1, 1), 3 at (1, -1)).
+    pub fn position(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
+        match self.corner {
+            [2, 3, 0, 1] => [-x, -y, z],
+            [2, 1, 0, 3] => [-y, -x, z],
+            [0, 3, 2, 1] => [y, x, z],
+            _ => [x, y, z],
         }
     }
 

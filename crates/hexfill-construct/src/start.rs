@@ -1,0 +1,232 @@
+//! Step 9: start positions. Every buffer cube is the trilinear image of its cell's template, the core's points are
+//! means of the tets' corners. What an embedding then has to do is local.
+//!
+//! The template lives in `[-1, 1]^3` with the surface at z = -1 and the core above: corner 0 at (-1, -1), 1 at (-1, 1),
+//! 2 at (1, 1), 3 at (1, -1). All sides are planar and congruent: a point of a side has coordinates (u, z), u = -1 at
+//! the diagonal corner and +1 at the odd corner, so neighbours agree on it. The inner copy of the surface is the
+//! surface scaled by one half towards a point that sees all of it, if its centroid does, else an offset along the
+//! vertex normals by a part of the shortest edge at the vertex.
+
+use crate::ball::centroid;
+use crate::cell::{Cell, CellLibrary};
+use crate::layer::Layer;
+use crate::pattern::{Pattern, Role};
+use crate::split::CorePoints;
+use crate::tets::{TET_EDGES, TetComplex, others};
+use hexfill_mesh::cube::EDGES;
+use hexfill_mesh::{Dart, QuadId, QuadSurface};
+
+type Point = [f64; 3];
+
+/// Share of the shortest edge by which the inner copy is moved inward.
+const OFFSET: f64 = 0.4;
+
+/// Position of corner `k` of the template in the plane.
+const CORNERS: [[f64; 2]; 4] = [[-1.0, -1.0], [-1.0, 1.0], [1.0, 1.0], [1.0, -1.0]];
+
+/// Where the template has a boundary point.
+pub fn template_position(role: Role) -> Point {
+    let at = |k: u8, z: f64| {
+        let [x, y] = CORNERS[usize::from(k)];
+        [x, y, z]
+    };
+    let on_side = |k: u8, u: f64, z: f64| {
+        let a = CORNERS[usize::from(Pattern::diagonal_corner(k))];
+        let b = CORNERS[usize::from(Pattern::odd_corner(k))];
+        let s = (1.0 + u) / 2.0;
+        [a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1]), z]
+    };
+    // Along the line from the centre to the odd corner of a triangle.
+    let in_triangle = |t: u8, s: f64| {
+        let [x, y] = CORNERS[usize::from(2 * t + 1)];
+        [s * x, s * y, 1.0]
+    };
+    match role {
+        Role::Outer(k) => at(k, -1.0),
+        Role::Inner(k) => at(k, 1.0),
+        Role::Middle(k) => at(k, 0.4),
+        Role::Edge(k) => on_side(k, 0.5, 1.0),
+        // A little above the corners: the light black-black side has a quad between them and the corners.
+        Role::EdgeDiagonal(k) => on_side(k, -0.35, 1.3),
+        Role::EdgeOdd(k) => on_side(k, 0.35, 1.3),
+        Role::X(k) => on_side(k, -0.1, -0.1),
+        Role::Y(k) => on_side(k, 0.35, 0.7),
+        Role::Z(k) => on_side(k, 0.0, 0.5),
+        Role::Star(k) => on_side(k, 0.0, 0.5),
+        Role::Diagonal => [0.0, 0.0, 1.0],
+        Role::Face(t) => in_triangle(t, 0.4),
+        Role::FaceLone(t) => in_triangle(t, 0.5),
+        Role::FacePair(t) => in_triangle(t, 0.25),
+        Role::Interior(_) => [0.0; 3],
+    }
+}
+
+/// Positions of all points of a cell in the template: those of its file, else [`template_position`] and, inside, means
+/// of the neighbours.
+pub fn template(cell: &Cell) -> Vec<Point> {
+    if let Some(positions) = &cell.positions {
+        return positions.clone();
+    }
+    let mut p: Vec<Point> = cell.points.iter().map(|&r| template_position(r)).collect();
+    let mut neighbours = vec![Vec::new(); p.len()];
+    for hex in &cell.hexes {
+        for [i, j] in EDGES {
+            let (a, b) = (hex[i], hex[j]);
+            for (v, w) in [(a, b), (b, a)] {
+                if !neighbours[usize::from(v)].contains(&w) {
+                    neighbours[usize::from(v)].push(w);
+                }
+            }
+        }
+    }
+    for _ in 0..200 {
+        for v in cell.n_boundary..p.len() {
+            let n = neighbours[v].len() as f64;
+            p[v] = std::array::from_fn(|c| neighbours[v].iter().map(|&w| p[usize::from(w)][c]).sum::<f64>() / n);
+        }
+    }
+    p
+}
+
+fn sub(a: Point, b: Point) -> Point {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+fn cross(a: Point, b: Point) -> Point {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+fn dot(a: Point, b: Point) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// Positions of the inner copy of every vertex.
+fn inner_copy(surface: &QuadSurface, points: &[Point]) -> Vec<Point> {
+    let at = |d: Dart| points[surface.origin(d).index()];
+    let corners: Vec<[u32; 3]> =
+        surface.darts().map(|d| [surface.origin(d.prev()).0, surface.origin(d).0, surface.target(d).0]).collect();
+    let centre = centroid(points, &corners);
+    let sees = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(|v| sub(points[v as usize], centre));
+        dot(a, cross(b, c)) > 0.0
+    };
+    if surface.n_components() == 1 && corners.iter().all(sees) {
+        return points.iter().map(|&p| std::array::from_fn(|c| (p[c] + centre[c]) / 2.0)).collect();
+    }
+    let mut normal = vec![[0.0; 3]; points.len()];
+    let mut shortest = vec![f64::INFINITY; points.len()];
+    for d in surface.darts() {
+        let v = surface.origin(d).index();
+        let here = sub(at(d.next()), at(d));
+        let n = cross(here, sub(at(d.prev()), at(d)));
+        let length = dot(n, n).sqrt();
+        if length > 0.0 {
+            normal[v] = std::array::from_fn(|c| normal[v][c] + n[c] / length);
+        }
+        shortest[v] = shortest[v].min(dot(here, here).sqrt());
+    }
+    points
+        .iter()
+        .zip(normal.iter().zip(&shortest))
+        .map(|(&p, (n, &h))| {
+            let length = dot(*n, *n).sqrt();
+            let step = if length > 1e-9 && h.is_finite() { OFFSET * h / length } else { 0.0 };
+            std::array::from_fn(|c| p[c] - step * n[c])
+        })
+        .collect()
+}
+
+/// Trilinear map of the template's cube to the hexahedron with outer corners `low` and inner corners `high`.
+fn trilinear(low: &[Point; 4], high: &[Point; 4], p: Point) -> Point {
+    let weight = |k: usize| (1.0 + CORNERS[k][0] * p[0]) * (1.0 + CORNERS[k][1] * p[1]) / 4.0;
+    let s = (1.0 + p[2]) / 2.0;
+    std::array::from_fn(|c| (0..4).map(|k| weight(k) * ((1.0 - s) * low[k][c] + s * high[k][c])).sum())
+}
+
+/// Start positions of every vertex of the mesh; those of the surface are `points`, bit for bit.
+pub(crate) fn start_positions(
+    surface: &QuadSurface,
+    points: &[Point],
+    layer: &Layer<'_>,
+    library: &CellLibrary,
+    complex: &TetComplex,
+    core: &CorePoints,
+) -> Vec<Point> {
+    let inner = inner_copy(surface, points);
+    let mut out = vec![[0.0; 3]; core.end as usize];
+    out[..points.len()].copy_from_slice(points);
+    // Core first: what lies on the inner facets is then written again by the cells.
+    let vertex = |v: u32| match complex.points.as_ref() {
+        _ if (v as usize) < points.len() => inner[v as usize],
+        Some(p) => p[v as usize],
+        None => [0.0; 3],
+    };
+    for (t, tet) in complex.tets.iter().enumerate() {
+        let p = tet.map(vertex);
+        let mean = |local: &[usize], weights: &[f64]| -> Point {
+            let total: f64 = weights.iter().sum();
+            std::array::from_fn(|c| local.iter().zip(weights).map(|(&i, w)| w * p[i][c]).sum::<f64>() / total)
+        };
+        let mut side = [false; 4];
+        for (k, &[i, j]) in TET_EDGES.iter().enumerate() {
+            let [low, high] = core.edge[complex.tet_edges[t][k] as usize];
+            let (i, j) = if tet[i] < tet[j] { (i, j) } else { (j, i) };
+            if low == high {
+                out[low as usize] = mean(&[i, j], &[1.0, 1.0]);
+            } else {
+                out[low as usize] = mean(&[i, j], &[2.0, 1.0]);
+                out[high as usize] = mean(&[i, j], &[1.0, 2.0]);
+            }
+            if i == 0 || j == 0 {
+                side[i.max(j)] = low != high;
+            }
+        }
+        let split = |local: &[usize], near: bool| {
+            let weights: Vec<f64> = local.iter().map(|&i| if side[i] == near { 2.0 } else { 1.0 }).collect();
+            mean(local, &weights)
+        };
+        for i in 0..4 {
+            let f = others(i);
+            let [lone, pair] = core.face[complex.tet_faces[t][i] as usize];
+            if lone == pair {
+                out[lone as usize] = mean(&f, &[1.0; 3]);
+            } else {
+                let n_far = f.iter().filter(|&&k| side[k]).count();
+                out[lone as usize] = split(&f, n_far == 1);
+                out[pair as usize] = split(&f, n_far == 2);
+            }
+        }
+        let [near, far] = core.tet[t];
+        out[near as usize] = if near == far { mean(&[0, 1, 2, 3], &[1.0; 4]) } else { split(&[0, 1, 2, 3], false) };
+        if near != far {
+            out[far as usize] = split(&[0, 1, 2, 3], true);
+        }
+        for (i, &v) in tet.iter().enumerate() {
+            out[core.vertex[v as usize] as usize] = p[i];
+        }
+    }
+    let templates: Vec<Vec<Point>> = library.cells().iter().map(template).collect();
+    let mut next = layer.n_points() as usize;
+    for q in 0..surface.n_quads() {
+        let quad = QuadId::new(q);
+        let Some(cell) = library.find(&layer.pattern(quad)) else { continue };
+        let corners = [0, 1, 2, 3].map(|k| layer.corner(quad, k).index());
+        let (low, high) = (corners.map(|v| points[v]), corners.map(|v| inner[v]));
+        for (i, &p) in templates[cell.cell].iter().enumerate() {
+            let at = trilinear(&low, &high, cell.symmetry.position(p));
+            match cell.boundary.get(i) {
+                Some(&role) => {
+                    let id = layer.point(quad, role) as usize;
+                    if id >= points.len() {
+                        out[id] = at;
+                    }
+                }
+                None => {
+                    out[next] = at;
+                    next += 1;
+                }
+            }
+        }
+    }
+    out
+}
