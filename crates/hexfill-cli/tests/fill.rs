@@ -77,17 +77,21 @@ fn the_surface_comes_back_bit_for_bit() {
         let (code, _, err) = hexfill(dir.path(), &["fill", "s.obj", "-o", out, "--no-embed"]);
         assert_eq!(code, 0, "{err}");
         assert!(err.contains("turned"), "{err}");
-        let (code, back, err) = hexfill(dir.path(), &["convert", out, "-o", "-", "--to", "obj"]);
+        let (code, back, err) = hexfill(dir.path(), &["convert", out, "-o", "-", "--to", "json"]);
         assert_eq!(code, 0, "{err}");
-        let numbers = |text: &str| -> Vec<u64> {
-            text.lines()
-                .filter(|l| l.starts_with("v "))
-                .flat_map(|l| {
-                    l[2..].split_whitespace().map(|x| x.parse::<f64>().unwrap().to_bits()).collect::<Vec<_>>()
-                })
-                .collect()
-        };
-        assert_eq!(numbers(&back)[..27], numbers(points)[..], "{out}");
+        let given: Vec<u64> = points
+            .lines()
+            .flat_map(|l| l[2..].split_whitespace().map(|x| x.parse::<f64>().unwrap().to_bits()).collect::<Vec<_>>())
+            .collect();
+        let written: Vec<u64> = json(&back)["points"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .flat_map(|p| p.as_array().unwrap().iter().map(|x| x.as_f64().unwrap().to_bits()).collect::<Vec<_>>())
+            .collect();
+        assert_eq!(written[..27], given[..], "{out}");
+        let (_, report, _) = hexfill(dir.path(), &["check", out, "--surface", "s.obj", "--json"]);
+        assert!(passed(&json(&report), 2), "{out}: {report}");
     }
 }
 
@@ -177,10 +181,10 @@ fn wait_for_size(path: &Path, size: u64) {
 #[test]
 fn a_killed_atlas_build_goes_on_and_ends_with_the_same_bytes() {
     let dir = tempfile::tempdir().unwrap();
-    let whole = ["atlas", "build", "--cap", "20", "--levels", "30", "-o", "whole.hxgrow"];
+    let whole = ["atlas", "build", "--cap", "24", "--levels", "28", "-o", "whole.hxgrow"];
     assert_eq!(hexfill(dir.path(), &whole).0, 0);
-    let killed = ["atlas", "build", "--cap", "20", "--levels", "30", "-o", "killed.hxgrow"];
-    for size in [40, 3_000, 12_000] {
+    let killed = ["atlas", "build", "--cap", "24", "--levels", "28", "-o", "killed.hxgrow"];
+    for size in [40, 20_000, 200_000] {
         let mut child = start(dir.path(), &killed);
         wait_for_size(&dir.path().join("killed.hxgrow"), size);
         child.kill().unwrap();

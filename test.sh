@@ -1,0 +1,32 @@
+#!/usr/bin/env bash
+# All tests: formatting, lints as errors, tests, documentation with broken links denied, licences, the viewer's bundle, and
+# the README's main command. Needs cargo and python3; node and npm for the viewer's bundle (skipped, with a word, without).
+set -euo pipefail
+cd "$(dirname "$0")"
+
+step() { printf '\n== %s\n' "$*"; }
+
+step "formatting"
+cargo fmt --all --check
+
+step "lints"
+cargo clippy --workspace --all-targets --locked -- -D warnings
+
+step "tests"
+cargo test --workspace --locked
+
+step "documentation"
+RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --locked
+
+step "licences"
+cargo metadata --format-version 1 --locked | python3 tests/licences.py
+
+step "viewer bundle"
+if command -v npm >/dev/null; then
+    sh crates/hexfill-view/viewer/check-bundle.sh
+else
+    echo "skipped: npm is not installed"
+fi
+
+step "the README's main command"
+python3 tests/readme.py
