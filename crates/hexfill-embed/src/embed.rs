@@ -15,7 +15,7 @@ use crate::random::Random;
 use crate::report::{CellQuality, EmbedReport, Embedding, Objective, Options};
 use crate::star::{self, StarBound};
 use crate::tutte;
-use crate::untangle::{UntangleLimits, bad_cells, untangle};
+use crate::untangle::bad_cells;
 use crate::vector::{Vector, norm, sub};
 use hexfill_mesh::cube::{EDGES, POSITIONS};
 use hexfill_mesh::{Context, HexId, HexMesh, Offenders, StopReason, VertexId};
@@ -309,9 +309,7 @@ impl Search<'_> {
         if n_hexes > self.options.local_limit || number == 0 && self.start.is_some() {
             (bad, stopped) = local::untangle_bad(problem, &mut points, context);
         } else {
-            let limits = UntangleLimits { rounds: 100, iterations: 200, extra_rounds: 0 };
-            stopped = untangle(problem, &mut points, limits, context).stopped;
-            bad = bad_cells(problem, &points);
+            (bad, stopped) = local::untangle_whole(problem, &mut points, context);
         }
         let climbs = self.options.objective != Objective::UntangleOnly && bad.is_empty();
         let target = self.upper_bound - 1e-9;

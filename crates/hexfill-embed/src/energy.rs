@@ -2,6 +2,7 @@
 //!
 //! Every term takes three edge vectors of one hex, one per direction, as the columns of a 3 x 3 matrix J measured in the
 //! hex's own length: `f = (tr J^T J / 3)^(3/2) / chi(eps, det J)` with `chi(e, D) = (D + sqrt(e^2 + D^2)) / 2`.
+//! A volume term `(D^2 + 1) / (2 chi)` can be added with a weight.
 //! With eps > 0 it is finite on inverted terms and pulls them right; as eps falls to 0 it becomes a barrier.
 //! A hex starts with the eight corner terms; any of the 64 mixed determinants of its Bernstein form can be added,
 //! and with all of them positive det J is positive in the whole cell.
@@ -21,6 +22,8 @@ pub(crate) struct Energy<'p> {
     rows: Vec<(f64, [Vector; 8])>,
     /// The regularisation, dimensionless.
     pub(crate) epsilon: f64,
+    /// Weight of the volume term `(D^2 + 1) / (2 chi)`; if positive, every hex has the same unit of length.
+    volume_weight: f64,
 }
 
 /// `chi(e, D)`, without cancellation for negative D.
@@ -31,7 +34,10 @@ pub(crate) fn chi(epsilon: f64, d: f64) -> f64 {
 
 impl<'p> Energy<'p> {
     /// The energy with the corner terms; sizes are taken from `points`.
-    pub(crate) fn new(problem: &'p Problem, points: &[Vector]) -> Self {
+    ///
+    /// With `volume_weight` 0 only shapes count, and each hex is measured in its own length. With a positive one every cell is
+    /// also pushed towards the same share of the volume, which keeps inverted cells from hiding by shrinking.
+    pub(crate) fn new(problem: &'p Problem, points: &[Vector], volume_weight: f64) -> Self {
         let n = problem.hexes.len();
         let mut energy = Self {
             problem,
@@ -39,6 +45,7 @@ impl<'p> Energy<'p> {
             sizes: vec![1.0; n],
             rows: vec![(0.0, [[0.0; 3]; 8]); n],
             epsilon: 1.0,
+            volume_weight,
         };
         energy.measure(points);
         energy
@@ -49,12 +56,20 @@ impl<'p> Energy<'p> {
     pub(crate) fn measure(&mut self, points: &[Vector]) {
         let problem = self.problem;
         let mut sizes = std::mem::take(&mut self.sizes);
-        problem.map_hexes(&mut sizes, |h| {
-            let p = problem.corners_of(h, points);
-            let lengths = FRAME_EDGES.map(|[a, b]| norm(crate::vector::sub(p[b], p[a])));
-            let longest = lengths.iter().fold(0.0, |m: f64, &l| m.max(l)).max(1e-12);
-            (lengths.iter().map(|l| l.max(1e-3 * longest).ln()).sum::<f64>() / 12.0).exp()
-        });
+        // The signed volumes add up to the volume inside the boundary, however tangled the cells are.
+        problem.map_hexes(&mut sizes, |h| Frame::new(&problem.corners_of(h, points)).bernstein().iter().sum::<f64>() / 27.0);
+        let volume: f64 = sizes.iter().sum();
+        let share = (volume.abs() / problem.hexes.len() as f64).cbrt().max(1e-12);
+        if self.volume_weight > 0.0 {
+            sizes.fill(share);
+        } else {
+            problem.map_hexes(&mut sizes, |h| {
+                let p = problem.corners_of(h, points);
+                let lengths = FRAME_EDGES.map(|[a, b]| norm(crate::vector::sub(p[b], p[a])));
+                let longest = lengths.iter().fold(0.0, |m: f64, &l| m.max(l)).max(0.01 * share);
+                (lengths.iter().map(|l| l.max(1e-3 * longest).ln()).sum::<f64>() / 12.0).exp()
+            });
+        }
         self.sizes = sizes;
     }
 
@@ -78,8 +93,9 @@ impl<'p> Energy<'p> {
     /// The value at `points`, and the gradient by variable (three numbers each).
     pub(crate) fn evaluate(&mut self, points: &[Vector], gradient: &mut [f64]) -> f64 {
         let (problem, terms, sizes, epsilon) = (self.problem, &self.terms, &self.sizes, self.epsilon);
+        let volume_weight = self.volume_weight;
         problem.map_hexes(&mut self.rows, |h| {
-            hex_energy(&problem.corners_of(h, points), terms[h], sizes[h], epsilon)
+            hex_energy(&problem.corners_of(h, points), terms[h], sizes[h], epsilon, volume_weight)
         });
         problem.sum_at_variables(&self.rows, gradient);
         self.rows.iter().map(|row| row.0).sum()
@@ -107,7 +123,8 @@ fn bits(mut set: u64) -> impl Iterator<Item = usize> {
     })
 }
 
-fn hex_energy(p: &[Vector; 8], terms: u64, size: f64, epsilon: f64) -> (f64, [Vector; 8]) {
+/// The energy of one hex, and its gradient by corner.
+fn hex_energy(p: &[Vector; 8], terms: u64, size: f64, epsilon: f64, volume_weight: f64) -> (f64, [Vector; 8]) {
     let inverse = 1.0 / size;
     let frame = Frame(Frame::new(p).0.map(|d| d.map(|e| e.map(|x| x * inverse))));
     let mut edge_gradient = [[[0.0; 3]; 4]; 3];
@@ -121,10 +138,11 @@ fn hex_energy(p: &[Vector; 8], terms: u64, size: f64, epsilon: f64) -> (f64, [Ve
         let x = chi(epsilon, d);
         let root = trace.sqrt();
         let f = root * trace / x;
-        value += f;
+        let volume = volume_weight * 0.5 * (d * d + 1.0) / x;
+        value += f + volume;
         // d chi / d D = chi / sqrt(e^2 + D^2).
         let along_edge = root / x;
-        let along_det = -f / epsilon.hypot(d);
+        let along_det = -(f + volume) / epsilon.hypot(d) + volume_weight * d / x;
         let g = &mut edge_gradient;
         for (slot, e, normal) in [((0, a), e1, n1), ((1, b), e2, cross(e3, e1)), ((2, c), e3, cross(e1, e2))] {
             let row = &mut g[slot.0][slot.1];
@@ -151,14 +169,14 @@ mod tests {
         for terms in [CORNERS, u64::MAX, CORNERS | 1 << 17] {
             let p: [Vector; 8] =
                 hexfill_mesh::cube::POSITIONS.map(|p| p.map(|x| f64::from(x) + 0.8 * random.signed()));
-            let (_, g) = hex_energy(&p, terms, 0.7, 0.5);
+            let (_, g) = hex_energy(&p, terms, 0.7, 0.5, 0.3);
             for corner in 0..8 {
                 for k in 0..3 {
                     let h = 1e-6;
                     let at = |t: f64| {
                         let mut q = p;
                         q[corner][k] += t;
-                        hex_energy(&q, terms, 0.7, 0.5).0
+                        hex_energy(&q, terms, 0.7, 0.5, 0.3).0
                     };
                     let slope = (at(h) - at(-h)) / (2.0 * h);
                     assert!((slope - g[corner][k]).abs() < 1e-5 * (1.0 + slope.abs()), "{slope} {}", g[corner][k]);

@@ -161,11 +161,6 @@ impl Frame {
         })
     }
 
-    /// The smallest scaled Jacobian at the eight corners of the box; -1 if an edge is zero or not finite.
-    pub(crate) fn corner_minimum(&self) -> f64 {
-        self.corner_values().iter().map(|v| v.0).fold(f64::INFINITY, f64::min)
-    }
-
     /// Whether det J > 0 on the whole box, by bisection with at most `max_boxes` boxes. A determinant counts as positive
     /// when it exceeds 1e-14 of the product of the lengths in it, well above its rounding error.
     pub(crate) fn sign(&self, max_boxes: usize) -> Sign {
@@ -191,7 +186,7 @@ impl Frame {
     }
 
     /// The worst scaled Jacobian of the cell, by bisection with at most `max_boxes` boxes: boxes whose lower bound is
-    /// above `cutoff`, or within `tolerance` of the worst value seen, are not cut further.
+    /// above `cutoff`, or within `tolerance` of the worst value seen, are not cut further, nor any once that value is not positive.
     pub(crate) fn worst(&self, cutoff: f64, tolerance: f64, max_boxes: usize) -> Worst {
         struct Part {
             bound: f64,
@@ -216,7 +211,7 @@ impl Frame {
         let mut boxes = 1;
         let mut open = vec![Part { bound: self.lower_bound(), frame: *self, origin, size, depth: 0 }];
         while let Some(part) = open.pop() {
-            if part.bound >= cutoff || part.bound >= upper - tolerance || boxes >= max_boxes || upper <= -1.0 {
+            if part.bound >= cutoff || part.bound >= upper - tolerance || boxes >= max_boxes || upper <= 0.0 {
                 lower = lower.min(part.bound);
                 continue;
             }
@@ -361,7 +356,7 @@ mod tests {
                 }
                 Sign::NotPositive => {
                     assert!(sampled < 0.02);
-                    invalid_with_good_corners += usize::from(frame.corner_minimum() > 0.0);
+                    invalid_with_good_corners += usize::from(frame.corner_values().iter().all(|v| v.0 > 0.0));
                 }
                 Sign::Unsettled => {}
             }

@@ -23,8 +23,6 @@ pub(crate) struct Limits {
 pub(crate) struct Minimum {
     /// The value reached.
     pub(crate) value: f64,
-    /// Iterations done.
-    pub(crate) iterations: usize,
 }
 
 /// Minimises `f` from `x`, which ends as the best point. `f(x, gradient)` writes the gradient and returns the value,
@@ -109,7 +107,7 @@ pub(crate) fn minimise(
             break;
         }
     }
-    Minimum { value, iterations }
+    Minimum { value }
 }
 
 fn two_loop(pairs: &VecDeque<(Vec<f64>, Vec<f64>, f64)>, diagonal: &[f64], gradient: &[f64], out: &mut [f64]) {

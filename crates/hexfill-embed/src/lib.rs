@@ -10,6 +10,9 @@
 //! Boundary vertices keep the bits they were given. Nothing here is a proof: that is for `hexfill-check`.
 //! Surfaces without coordinates get those of the canonical polyhedron ([`canonical_polyhedron`]).
 
+// Matrices and small vectors read like their formulas with indices.
+#![allow(clippy::needless_range_loop)]
+
 mod canonical;
 mod curvature;
 mod embed;

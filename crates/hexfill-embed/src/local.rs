@@ -36,23 +36,42 @@ pub(crate) fn untangle_bad(
             break;
         }
         each(&parts, points, context, |part, points, context| {
-            let limits = UntangleLimits { rounds: 60, iterations: 100, extra_rounds: 1 };
+            let limits = UntangleLimits { rounds: 60, iterations: 100, extra_rounds: 1, ..UntangleLimits::new() };
             untangle(&part.problem, points, limits, context);
         });
         bad = bad_cells(problem, points);
     }
-    if !bad.is_empty() && context.stop().is_none() {
-        let limits = UntangleLimits { rounds: 100, iterations: 200, extra_rounds: 0 };
-        let mut trial = points.clone();
-        let done = untangle(problem, &mut trial, limits, context);
-        let still = bad_cells(problem, &trial);
-        if still.len() < bad.len() {
-            *points = trial;
-            bad = still;
-        }
-        return (bad, done.stopped);
+    match context.stop() {
+        None if !bad.is_empty() => untangle_whole(problem, points, context),
+        stop => (bad, stop),
     }
-    (bad, None)
+}
+
+/// Untangles all at once: shapes only, and if that fails with the volume term, from the same points. Keeps what has
+/// fewer bad cells. Returns the cells still bad, ascending, and why it stopped.
+pub(crate) fn untangle_whole(
+    problem: &Problem,
+    points: &mut [Vector],
+    context: &Context<'_>,
+) -> (Vec<usize>, Option<StopReason>) {
+    let start = points.to_vec();
+    let mut best: Option<(Vec<usize>, Vec<Vector>)> = None;
+    let mut stopped = None;
+    for volume_weight in [0.0, 1.0] {
+        let mut trial = start.clone();
+        let done = untangle(problem, &mut trial, UntangleLimits { volume_weight, ..UntangleLimits::new() }, context);
+        let bad = bad_cells(problem, &trial);
+        stopped = done.stopped;
+        if best.as_ref().is_none_or(|(least, _)| bad.len() < least.len()) {
+            best = Some((bad, trial));
+        }
+        if stopped.is_some() || best.as_ref().is_some_and(|(bad, _)| bad.is_empty()) {
+            break;
+        }
+    }
+    let (bad, trial) = best.expect("the loop ran");
+    points.copy_from_slice(&trial);
+    (bad, stopped)
 }
 
 /// Solves every patch from the same `points` and writes a result back if it has fewer bad cells, or as many and a

@@ -46,8 +46,6 @@ pub(crate) struct Limits {
 pub(crate) struct Climb {
     /// The worst scaled Jacobian over all cells, whole.
     pub(crate) scaled_jacobian: f64,
-    /// Programs solved.
-    pub(crate) iterations: usize,
     /// Set if the context asked to stop.
     pub(crate) stopped: Option<StopReason>,
 }
@@ -161,7 +159,7 @@ pub(crate) fn climb(
         let reached = merit(problem, &trial, &trial_cells, goal);
         let gain = reached - value;
         context.report("optimise", iterations as u64, Some(limits.iterations as u64), || {
-            format!("{:?} worst {value:.6}", goal)
+            format!("{goal:?}, now {value:.6}")
         });
         multipliers = step.multipliers;
         if gain > 0.0 {
@@ -181,7 +179,7 @@ pub(crate) fn climb(
             radius = (2.0 * radius).min(1.0);
         }
     }
-    Climb { scaled_jacobian: cells.worst, iterations, stopped }
+    Climb { scaled_jacobian: cells.worst, stopped }
 }
 
 /// Per variable: how far its vertex may move at radius 1, its shortest edge.

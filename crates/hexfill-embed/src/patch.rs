@@ -13,8 +13,6 @@ pub(crate) struct Patch {
     pub(crate) problem: Problem,
     /// Per vertex of the part: the vertex of the whole.
     pub(crate) vertices: Vec<u32>,
-    /// Per hex of the part: the hex of the whole.
-    pub(crate) hexes: Vec<u32>,
 }
 
 impl Patch {
@@ -119,15 +117,15 @@ pub(crate) fn patches(problem: &Problem, incidence: &Incidence, seeds: &[usize],
         members.sort_unstable();
         groups.push(members);
     }
-    groups.into_iter().map(|hexes| part(problem, hexes, &free)).collect()
+    groups.into_iter().map(|hexes| part(problem, &hexes, &free)).collect()
 }
 
-fn part(problem: &Problem, hexes: Vec<u32>, free: &[bool]) -> Patch {
+fn part(problem: &Problem, hexes: &[u32], free: &[bool]) -> Patch {
     let mut vertices: Vec<u32> = hexes.iter().flat_map(|&h| problem.hexes[h as usize]).collect();
     vertices.sort_unstable();
     vertices.dedup();
     let local = |v: u32| vertices.binary_search(&v).expect("every vertex was collected") as u32;
     let cells = hexes.iter().map(|&h| problem.hexes[h as usize].map(local)).collect();
     let fixed: Vec<bool> = vertices.iter().map(|&v| !free[v as usize]).collect();
-    Patch { problem: Problem::new(vertices.len(), cells, &fixed), vertices, hexes }
+    Patch { problem: Problem::new(vertices.len(), cells, &fixed), vertices }
 }

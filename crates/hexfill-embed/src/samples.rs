@@ -1,7 +1,5 @@
 //! Small meshes for the tests of this crate.
 
-use crate::random::Random;
-use crate::vector::Vector;
 use hexfill_mesh::HexMesh;
 
 /// The cube cut into n x n x n hexes; vertex (i, j, k) has id `i + (n + 1) (j + (n + 1) k)`.
@@ -18,20 +16,4 @@ pub(crate) fn grid(n: usize) -> HexMesh {
         }
     }
     HexMesh::try_new((n + 1).pow(3), &hexes).expect("a grid is a mesh")
-}
-
-/// The points of [`grid`] on the unit cube, interior points moved by up to `noise` of a cell.
-pub(crate) fn grid_points(n: usize, noise: f64, seed: u64) -> Vec<Vector> {
-    let mut random = Random::new(seed, 0);
-    let mut points = Vec::new();
-    for k in 0..=n {
-        for j in 0..=n {
-            for i in 0..=n {
-                let inner = [i, j, k].iter().all(|&x| x > 0 && x < n);
-                let move_by = if inner { noise } else { 0.0 };
-                points.push([i, j, k].map(|x| (x as f64 + move_by * random.signed()) / n as f64));
-            }
-        }
-    }
-    points
 }

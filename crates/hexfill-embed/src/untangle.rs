@@ -24,15 +24,20 @@ pub(crate) struct UntangleLimits {
     pub(crate) iterations: usize,
     /// Rounds to go on once everything is positive: further shape improvement.
     pub(crate) extra_rounds: usize,
+    /// Weight of the volume term of the energy.
+    pub(crate) volume_weight: f64,
+}
+
+impl UntangleLimits {
+    /// The usual limits, shapes only.
+    pub(crate) const fn new() -> Self {
+        Self { rounds: 100, iterations: 200, extra_rounds: 0, volume_weight: 0.0 }
+    }
 }
 
 /// What untangling came to.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Untangled {
-    /// Whether every cell is positive in floating point.
-    pub(crate) valid: bool,
-    /// L-BFGS iterations in all.
-    pub(crate) iterations: usize,
     /// Set if the context asked to stop.
     pub(crate) stopped: Option<StopReason>,
 }
@@ -44,12 +49,11 @@ pub(crate) fn untangle(
     limits: UntangleLimits,
     context: &Context<'_>,
 ) -> Untangled {
-    let mut energy = Energy::new(problem, points);
+    let mut energy = Energy::new(problem, points, limits.volume_weight);
     let mut x = problem.gather(points);
     let mut gradient = vec![0.0; x.len()];
     let mut smallest = energy.smallest_determinant(points);
     energy.epsilon = first_epsilon(smallest);
-    let mut iterations = 0;
     let mut positive_rounds = 0;
     for round in 0..limits.rounds {
         let before = energy.evaluate(points, &mut gradient);
@@ -70,21 +74,22 @@ pub(crate) fn untangle(
             },
         );
         problem.scatter(&x, points);
-        iterations += found.iterations;
         smallest = energy.smallest_determinant(points);
-        context.report("untangle", round as u64, None, || format!("smallest determinant {smallest:.3e}"));
+        context.report("untangle", round as u64, Some(limits.rounds as u64), || {
+            format!("smallest determinant {smallest:.3e} at eps {:.3e}", energy.epsilon)
+        });
         if smallest > 0.0 {
             let failing = add_failing_terms(problem, points, &mut energy);
             if failing == 0 {
                 positive_rounds += 1;
                 if positive_rounds > limits.extra_rounds || stopped.is_some() {
-                    return Untangled { valid: true, iterations, stopped };
+                    return Untangled { stopped };
                 }
             }
             smallest = energy.smallest_determinant(points);
         }
         if stopped.is_some() {
-            return Untangled { valid: false, iterations, stopped };
+            return Untangled { stopped };
         }
         energy.epsilon = next_epsilon(energy.epsilon, smallest, before, found.value);
         energy.measure(points);
@@ -94,8 +99,7 @@ pub(crate) fn untangle(
             energy.epsilon = energy.epsilon.max(1e-6 * (1.0 + smallest.abs()));
         }
     }
-    let valid = smallest > 0.0 && add_failing_terms(problem, points, &mut energy) == 0;
-    Untangled { valid, iterations, stopped: None }
+    Untangled { stopped: None }
 }
 
 fn first_epsilon(smallest: f64) -> f64 {

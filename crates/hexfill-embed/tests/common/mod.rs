@@ -1,0 +1,69 @@
+//! Meshes and judging shared by the tests.
+#![allow(dead_code)] // each test binary uses its part
+
+use hexfill_check::{Judged, Level, judge};
+use hexfill_mesh::{Context, HexMesh};
+use serde::Deserialize;
+
+/// A mesh with the coordinates of its boundary.
+#[derive(Deserialize)]
+pub struct Sample {
+    pub hexes: Vec<[u32; 8]>,
+    pub boundary_points: Vec<[f64; 3]>,
+}
+
+impl Sample {
+    /// Reads `tests/data/NAME.json`.
+    pub fn read(name: &str) -> Self {
+        let path = format!("{}/tests/data/{name}.json", env!("CARGO_MANIFEST_DIR"));
+        serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
+    }
+
+    pub fn mesh(&self) -> HexMesh {
+        let n = self.hexes.iter().flatten().max().map_or(0, |&v| v as usize + 1);
+        HexMesh::try_new(n, &self.hexes).unwrap()
+    }
+}
+
+/// The cube cut into n x n x n hexes, and its points; interior points are moved by up to `noise` cells (fixed pseudo-random).
+pub fn grid(n: usize, noise: f64) -> (HexMesh, Vec<[f64; 3]>) {
+    let at = |i: usize, j: usize, k: usize| (i + (n + 1) * (j + (n + 1) * k)) as u32;
+    let mut hexes = Vec::new();
+    let mut points = Vec::new();
+    let mut state = 12345u64;
+    let mut random = || {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (state >> 33) as f64 / (1u64 << 30) as f64 - 1.0
+    };
+    for k in 0..=n {
+        for j in 0..=n {
+            for i in 0..=n {
+                let inner = [i, j, k].iter().all(|&x| x > 0 && x < n);
+                points.push([i, j, k].map(|x| (x as f64 + if inner { noise * random() } else { 0.0 }) / n as f64));
+                if i < n && j < n && k < n {
+                    hexes.push(
+                        hexfill_mesh::cube::POSITIONS
+                            .map(|p| at(i + p[0] as usize, j + p[1] as usize, k + p[2] as usize)),
+                    );
+                }
+            }
+        }
+    }
+    (HexMesh::try_new(points.len(), &hexes).unwrap(), points)
+}
+
+/// Whether the independent judge certifies det J > 0 in every hex, and its certified interval of the worst scaled Jacobian.
+pub fn certified(mesh: &HexMesh, points: &[[f64; 3]]) -> (bool, [f64; 2]) {
+    let hexes = mesh.hexes_raw();
+    let input = Judged::connectivity(mesh.n_vertices(), &hexes).with_points(points);
+    let report = judge(&input, &hexfill_check::Options::default().quality(true), &Context::default());
+    let interval = report.geometry.as_ref().and_then(|g| g.quality.as_ref()).map(|q| q.certified_scaled_jacobian);
+    (report.passed(Level::L5), interval.unwrap_or([-1.0; 2]))
+}
+
+/// The boundary vertices of `points` have the bits of `boundary`.
+pub fn assert_boundary_kept(mesh: &HexMesh, boundary: &[[f64; 3]], points: &[[f64; 3]]) {
+    for (v, _) in mesh.boundary_vertices().iter().enumerate().filter(|(_, on)| **on) {
+        assert_eq!(points[v].map(f64::to_bits), boundary[v].map(f64::to_bits), "vertex {v} moved");
+    }
+}

@@ -1,0 +1,180 @@
+//! The pipeline against the independent judge.
+
+mod common;
+
+use common::{Sample, assert_boundary_kept, certified, grid};
+use hexfill_embed::{Objective, Options, embed, star_bounds, tutte_start};
+use hexfill_mesh::{Context, HexMesh, StopReason};
+use std::time::{Duration, Instant};
+
+#[test]
+fn refinement_cubes_reach_their_star_bound() {
+    for name in ["refine_9to1_13", "refine_16to4_28"] {
+        let sample = Sample::read(name);
+        let mesh = sample.mesh();
+        let done = embed(&mesh, &sample.boundary_points, None, &Options::default(), &Context::default()).unwrap();
+        let (valid, [lower, upper]) = certified(&mesh, &done.points);
+        assert!(valid && done.report.valid_in_floating_point);
+        assert_boundary_kept(&mesh, &sample.boundary_points, &done.points);
+        // The bound is met, so this is the optimum for this boundary.
+        assert!((done.report.upper_bound - 0.5).abs() < 1e-9);
+        assert!(lower > 0.5 - 1e-6 && upper <= 0.5 + 1e-9, "{name} {lower} {upper}");
+        assert!((done.report.scaled_jacobian - lower).abs() < 1e-6);
+        assert_eq!(done.report.stop, StopReason::Finished);
+    }
+}
+
+#[test]
+fn balanced_keeps_most_of_the_optimum_and_lowers_the_condition() {
+    let sample = Sample::read("refine_9to1_13");
+    let mesh = sample.mesh();
+    let run = |objective| {
+        embed(&mesh, &sample.boundary_points, None, &Options::new(objective), &Context::default()).unwrap().report
+    };
+    let (best, balanced) = (run(Objective::ScaledJacobian), run(Objective::Balanced));
+    assert!(balanced.scaled_jacobian >= 0.95 * best.scaled_jacobian - 1e-9);
+    assert!(balanced.condition < best.condition);
+}
+
+#[test]
+fn tangled_grids_are_untangled() {
+    let context = Context::default();
+    for (n, noise) in [(3, 1.0), (4, 3.0), (6, 0.8)] {
+        let (mesh, start) = grid(n, noise);
+        assert!(!certified(&mesh, &start).0, "the start is tangled");
+        let options = Options::new(Objective::UntangleOnly);
+        let done = embed(&mesh, &start, Some(&start), &options, &context).unwrap();
+        assert!(certified(&mesh, &done.points).0 && done.report.valid_in_floating_point, "{n} {noise}");
+        assert_boundary_kept(&mesh, &start, &done.points);
+    }
+    // All interior vertices in one point, and all outside the cube.
+    for place in [[0.5; 3], [7.0, -3.0, 2.0]] {
+        let (mesh, mut start) = grid(4, 0.0);
+        for (v, &on) in mesh.boundary_vertices().iter().enumerate() {
+            if !on {
+                start[v] = place;
+            }
+        }
+        let options = Options::new(Objective::UntangleOnly);
+        let done = embed(&mesh, &start, Some(&start), &options, &context).unwrap();
+        assert!(certified(&mesh, &done.points).0, "{place:?}");
+    }
+}
+
+#[test]
+fn a_grid_is_restored_to_nearly_perfect() {
+    let (mesh, start) = grid(3, 0.9);
+    let done = embed(&mesh, &start, Some(&start), &Options::default(), &Context::default()).unwrap();
+    assert!(done.report.scaled_jacobian > 0.999, "{}", done.report.scaled_jacobian);
+}
+
+#[test]
+fn only_bad_cells_move_in_large_meshes() {
+    let n = 12;
+    let (mesh, mut points) = grid(n, 0.0);
+    // Swap two interior neighbours far from the corner at the origin.
+    let at = |i: usize, j: usize, k: usize| i + (n + 1) * (j + (n + 1) * k);
+    points.swap(at(9, 9, 9), at(10, 9, 9));
+    let options = Options::new(Objective::UntangleOnly);
+    let done = embed(&mesh, &points, Some(&points), &options, &Context::default()).unwrap();
+    assert!(certified(&mesh, &done.points).0);
+    for (i, j, k) in [(2, 2, 2), (5, 5, 5), (1, 10, 10)] {
+        let (new, old) = (done.points[at(i, j, k)], points[at(i, j, k)]);
+        assert!((0..3).all(|x| (new[x] - old[x]).abs() < 1e-12), "{new:?} {old:?}");
+    }
+    assert_ne!(done.points[at(9, 9, 9)], points[at(9, 9, 9)]);
+}
+
+#[test]
+fn same_bytes_for_any_number_of_threads() {
+    let sample = Sample::read("refine_16to4_28");
+    let (grid_mesh, grid_start) = grid(5, 0.9);
+    let mesh = sample.mesh();
+    let run = |threads: usize| {
+        let mut options = Options::default();
+        options.threads = threads;
+        options.starts = 3;
+        let context = Context { seed: 42, ..Context::default() };
+        let a = embed(&mesh, &sample.boundary_points, None, &options, &context).unwrap();
+        options.whole_limit = 20; // patches
+        options.programs = 6;
+        let b = embed(&grid_mesh, &grid_start, Some(&grid_start), &options, &context).unwrap();
+        (a, b)
+    };
+    let one = run(1);
+    for threads in [2, 5] {
+        let many = run(threads);
+        for (a, b) in [(&one.0, &many.0), (&one.1, &many.1)] {
+            assert_eq!(a.report, b.report);
+            assert!(a.points.iter().flatten().zip(b.points.iter().flatten()).all(|(x, y)| x.to_bits() == y.to_bits()));
+        }
+    }
+}
+
+#[test]
+fn tiny_and_huge_coordinates_are_the_same_problem() {
+    let sample = Sample::read("refine_9to1_13");
+    let mesh = sample.mesh();
+    let run = |scale: f64| {
+        let boundary: Vec<[f64; 3]> = sample.boundary_points.iter().map(|p| p.map(|x| x * scale)).collect();
+        embed(&mesh, &boundary, None, &Options::default(), &Context::default()).unwrap().report
+    };
+    let one = run(1.0).scaled_jacobian;
+    for scale in [1e-300, 1e-30, 1e30, 1e300] {
+        let report = run(scale);
+        assert!(report.valid_in_floating_point);
+        assert!((report.scaled_jacobian - one).abs() < 1e-6, "{scale} {}", report.scaled_jacobian);
+    }
+}
+
+#[test]
+fn the_start_honours_the_boundary_and_means() {
+    let (mesh, points) = grid(4, 0.7);
+    let start = tutte_start(&mesh, &points).unwrap();
+    assert_boundary_kept(&mesh, &points, &start);
+    // On a grid the graph-Laplacian solution is the grid itself.
+    let (_, exact) = grid(4, 0.0);
+    for (a, b) in start.iter().zip(&exact) {
+        assert!((0..3).all(|k| (a[k] - b[k]).abs() < 1e-9));
+    }
+    let bounds = star_bounds(&mesh, &points).unwrap();
+    assert!(bounds.iter().all(|b| b.bound > 0.99));
+}
+
+#[test]
+fn a_boundary_that_allows_nothing_is_named() {
+    // A reflected cube: every corner is negative whatever one does.
+    let mesh = HexMesh::try_new(8, &[[0, 1, 2, 3, 4, 5, 6, 7]]).unwrap();
+    let mirrored: Vec<[f64; 3]> =
+        hexfill_mesh::cube::POSITIONS.iter().map(|p| [-f64::from(p[0]), f64::from(p[1]), f64::from(p[2])]).collect();
+    let done = embed(&mesh, &mirrored, None, &Options::default(), &Context::default()).unwrap();
+    assert!(!done.report.valid_in_floating_point && done.report.is_impossible());
+    assert_eq!(done.report.n_invalid, 1);
+    // Flat in a plane: the bound is 0, nothing valid is found, and no claim is made beyond that.
+    let (mesh, points) = grid(2, 0.0);
+    let flat: Vec<[f64; 3]> = points.iter().map(|p| [p[0], p[1], 0.0]).collect();
+    let done = embed(&mesh, &flat, None, &Options::default(), &Context::default()).unwrap();
+    assert!(!done.report.valid_in_floating_point && done.report.upper_bound <= 1e-12 && !done.report.is_impossible());
+    assert!(done.report.n_invalid == 8 && done.report.worst_cells[0].scaled_jacobian <= 0.0);
+    // Two boundary vertices in one point.
+    let (mesh, mut points) = grid(2, 0.0);
+    points[0] = points[1];
+    let done = embed(&mesh, &points, None, &Options::default(), &Context::default()).unwrap();
+    assert!(!done.report.valid_in_floating_point && done.report.upper_bound <= 1e-12);
+    // A boundary pushed through itself.
+    let (mesh, mut points) = grid(2, 0.0);
+    points[0] = [2.0, 2.0, 2.0];
+    let done = embed(&mesh, &points, None, &Options::default(), &Context::default()).unwrap();
+    assert!(!done.report.valid_in_floating_point);
+}
+
+#[test]
+fn a_time_limit_returns_the_best_so_far() {
+    let (mesh, points) = grid(10, 2.0);
+    let context = Context::default().with_time_limit(Duration::from_millis(1));
+    let before = Instant::now();
+    let done = embed(&mesh, &points, Some(&points), &Options::default(), &context).unwrap();
+    assert_eq!(done.report.stop, StopReason::TimeLimit);
+    assert!(before.elapsed() < Duration::from_secs(5));
+    assert_eq!(done.points.len(), mesh.n_vertices());
+}
