@@ -187,7 +187,7 @@ impl Boundary {
                 // Two edges a quad: V - E + F = V - F.
                 euler[count % MAX_CUBES] -= 1;
                 for p in self.partner[q] {
-                    let other = p as usize / 4 & (MAX_QUADS - 1);
+                    let other = (p as usize / 4) & (MAX_QUADS - 1);
                     if component[other] == u8::MAX {
                         component[other] = count as u8;
                         todo |= 1 << other;
@@ -209,7 +209,7 @@ impl Boundary {
                 while seen[at & (MAX_QUADS - 1)] >> corner & 1 == 0 {
                     seen[at & (MAX_QUADS - 1)] |= 1 << corner;
                     let p = self.partner[at & (MAX_QUADS - 1)][edge & 3] as usize;
-                    let (next, e) = (p / 4 & (MAX_QUADS - 1), p & 3);
+                    let (next, e) = ((p / 4) & (MAX_QUADS - 1), p & 3);
                     at = next;
                     if self.corners[next][e] == v {
                         corner = e;

@@ -251,7 +251,7 @@ pub(crate) fn search(c: &Complex, invariants: &[u64; MAX_CUBES]) -> Labelling {
             let frame = &FRAMES[s as usize];
             let [x, y, z] = [1, 3, 4].map(|k: usize| value[cube[frame[k] as usize & 7] as usize & 63]);
             if x <= y && y <= z {
-                walk.from_flag(a as usize, s as usize);
+                walk.start_at(a as usize, s as usize);
             }
         }
     }
@@ -269,7 +269,7 @@ pub fn canonical_over_all_flags(c: &Complex) -> Labelling {
         Walk { c, best: [u64::MAX; MAX_CUBES - 1], automorphisms: 0, signs: 0, first_position: [u8::MAX; MAX_CUBES] };
     for a in 0..c.n_cubes() {
         for s in 0..48 {
-            walk.from_flag(a, s);
+            walk.start_at(a, s);
         }
     }
     Labelling {
@@ -302,7 +302,7 @@ impl Walk<'_> {
 
     /// Walks breadth first from one flag and keeps the code if it is the least so far.
     #[inline]
-    fn from_flag(&mut self, cube: usize, frame: usize) {
+    fn start_at(&mut self, cube: usize, frame: usize) {
         let c = self.c;
         let n = c.n_cubes();
         let mut label = [u8::MAX; MAX_VERTICES];

@@ -34,7 +34,7 @@ pub fn default_chunks(parts: usize) -> usize {
 
 /// Gives results on in the order of their chunks, holding back those that come too early.
 struct InOrder<'a> {
-    expected: std::vec::IntoIter<Chunk>,
+    expected: std::iter::Copied<std::slice::Iter<'a, Chunk>>,
     next: Option<Chunk>,
     waiting: BTreeMap<Chunk, ChunkResult>,
     give: &'a mut (dyn FnMut(ChunkResult) -> Result<(), EnumerateError> + Send),
@@ -63,7 +63,7 @@ pub fn run_in_order(
     ctx: &Context<'_>,
     give: &mut (dyn FnMut(ChunkResult) -> Result<(), EnumerateError> + Send),
 ) -> Result<(), EnumerateError> {
-    let mut expected = chunks.to_vec().into_iter();
+    let mut expected = chunks.iter().copied();
     let next = expected.next();
     let mut order = InOrder { expected, next, waiting: BTreeMap::new(), give };
     plan.run_all(chunks, threads, wanted, ctx, &mut |result| order.take(result))

@@ -22,6 +22,9 @@
 //! # Ok::<(), hexfill_enumerate::EnumerateError>(())
 //! ```
 
+// The inner loops run one index over several small tables at once.
+#![allow(clippy::needless_range_loop)]
+
 mod augment;
 mod boundary;
 mod canonical;

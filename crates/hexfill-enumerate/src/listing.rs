@@ -102,7 +102,7 @@ pub fn mesh_of(code: &Code, rule: Rule) -> Result<Complex, EnumerateError> {
 /// The same complex with its cubes in an order in which rule `weill` adds them one by one; `None` if there is none.
 pub fn weill_order(c: &Complex) -> Option<Complex> {
     let mut order = Vec::new();
-    if !edges_are_manifold(c) || !unbuild(c, &mut (0..c.n_cubes()).collect(), &mut order) {
+    if !edges_are_manifold(c) || !unbuild(c, &(0..c.n_cubes()).collect::<Vec<_>>(), &mut order) {
         return None;
     }
     order.reverse();
@@ -112,7 +112,7 @@ pub fn weill_order(c: &Complex) -> Option<Complex> {
 
 /// Takes cubes away one by one while the rest stays legal. `names` are the original numbers of the cubes of `c`; those taken away are
 /// appended to `order`.
-fn unbuild(c: &Complex, names: &mut Vec<usize>, order: &mut Vec<usize>) -> bool {
+fn unbuild(c: &Complex, names: &[usize], order: &mut Vec<usize>) -> bool {
     if c.n_cubes() == 1 {
         order.push(names[0]);
         return true;
@@ -126,9 +126,9 @@ fn unbuild(c: &Complex, names: &mut Vec<usize>, order: &mut Vec<usize>) -> bool 
         if !edges_are_manifold(&rest) {
             continue;
         }
-        let mut left = names.clone();
+        let mut left = names.to_vec();
         order.push(left.swap_remove(a));
-        if unbuild(&rest, &mut left, order) {
+        if unbuild(&rest, &left, order) {
             return true;
         }
         order.pop();

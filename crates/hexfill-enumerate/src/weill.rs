@@ -95,7 +95,7 @@ impl<F: FnMut(&Complex, u8)> Site<'_, F> {
                 continue;
             }
             let partner = self.boundary.partner[base][i] as usize;
-            let (q, e) = (partner / 4 & 63, partner & 3);
+            let (q, e) = ((partner / 4) & 63, partner & 3);
             if q <= base {
                 return;
             }
@@ -110,7 +110,7 @@ impl<F: FnMut(&Complex, u8)> Site<'_, F> {
             on[SIDE_OVER[i]] = q as u8;
             if with_top {
                 let partner = self.boundary.partner[q][(e + 2) & 3] as usize;
-                let (q, e) = (partner / 4 & 63, partner & 3);
+                let (q, e) = ((partner / 4) & 63, partner & 3);
                 if q <= base || (on[TOP] != u8::MAX && on[TOP] != q as u8) {
                     return;
                 }
