@@ -31,7 +31,7 @@ struct Cli {
     common: Common,
 }
 
-/// Flags every command takes.
+// Flags every command takes. (No doc comment: clap would print it as the description of the program.)
 #[derive(Args, Clone)]
 pub struct Common {
     /// Threads to use [default: all cores].

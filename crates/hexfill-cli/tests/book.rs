@@ -2,7 +2,7 @@
 //!
 //! In a block marked `console`, a line `$ hexfill ...` is a command; `? N` after it is its exit code (0 if absent); the other lines
 //! must be what it prints on stdout and stderr together: `[..]` stands for anything in a line, a line `...` for any lines. A
-//! command without lines after it may print what it likes.
+//! command without lines after it may print what it likes. Commands that are not to be run here stand in blocks marked `sh`.
 
 use assert_cmd::Command;
 use std::path::Path;
@@ -20,6 +20,8 @@ fn steps(page: &str) -> Vec<Step> {
         if line.starts_with("```") {
             inside = line.trim_end() == "```console";
         } else if inside && let Some(command) = line.strip_prefix("$ ") {
+            // Two spaces and a # begin a remark.
+            let command = command.split_once("  #").map_or(command, |(command, _)| command).trim_end();
             steps.push(Step { command: command.to_owned(), code: 0, expected: Vec::new() });
         } else if inside && let Some(step) = steps.last_mut() {
             match line.strip_prefix("? ") {
