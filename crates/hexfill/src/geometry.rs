@@ -53,7 +53,7 @@ pub fn place(
     options: Option<&hexfill_embed::Options>,
     ctx: &Context<'_>,
 ) -> Result<Placed, EmbedError> {
-    let (points, embedding) = match options {
+    let (mut points, embedding) = match options {
         Some(options) => {
             let made = embed(&filled.mesh, boundary, filled.start.as_deref(), options, ctx)?;
             (made.points, Some(made.report))
@@ -63,6 +63,8 @@ pub fn place(
             None => (tutte_start(&filled.mesh, boundary)?, None),
         },
     };
+    // The surface's points come back bit for bit, those that no quad uses included.
+    points[..boundary.len()].copy_from_slice(boundary);
     let hexes = filled.mesh.hexes_raw();
     let judged = Judged::connectivity(filled.mesh.n_vertices(), &hexes).with_points(&points);
     // Every vertex id of a `HexMesh` has a position here, so every hex has a quality.

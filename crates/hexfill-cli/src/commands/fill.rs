@@ -247,10 +247,11 @@ fn say(output: &Output, args: &FillArgs, console: &Console) {
     for mesh in &output.meshes {
         let r = &mesh.report;
         console.say(format!(
-            "{}: {} quads filled with {} hexes ({:.1} per quad), {} interior vertices, {} sheets, by {}",
+            "{}: {} quads filled with {} hex{} ({:.1} per quad), {} interior vertices, {} sheets, by {}",
             r.surface,
             r.quads,
             r.hexes,
+            if r.hexes == 1 { "" } else { "es" },
             r.hexes_per_quad,
             r.interior_vertices,
             r.sheets,
