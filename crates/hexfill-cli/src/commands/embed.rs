@@ -1,0 +1,100 @@
+//! `hexfill embed MESH -o OUT`: new positions for the interior vertices of a mesh.
+
+use crate::console::Console;
+use crate::exit::Exit;
+use crate::files;
+use anyhow::bail;
+use hexfill::check::{Judged, cell_quality};
+use hexfill::embed::{Objective, Options, embed};
+use hexfill::io::Format;
+use hexfill::mesh::HexMesh;
+use hexfill::{Context, GeometryReport, Placed};
+use serde::Serialize;
+
+/// Flags of `embed`.
+#[derive(clap::Args)]
+pub struct EmbedArgs {
+    /// The mesh; the positions of its boundary vertices are kept bit for bit.
+    mesh: String,
+    /// The mesh to write; format by extension; `-` for stdout.
+    #[arg(short, long, value_name = "OUT")]
+    output: String,
+    /// What the positions should be good at.
+    #[arg(long, value_enum, default_value = "sj")]
+    objective: ObjectiveArg,
+    /// Starts at most; 0 chooses by size.
+    #[arg(long, default_value_t = 0, value_name = "N")]
+    starts: u32,
+    /// Do not begin with the interior positions of the file.
+    #[arg(long)]
+    fresh: bool,
+    /// Write nothing unless det J > 0 is certified in every hex.
+    #[arg(long)]
+    require_valid: bool,
+    /// Format of the input.
+    #[arg(long, value_name = "FORMAT", value_parser = files::parse_format)]
+    from: Option<Format>,
+    /// Format of the output.
+    #[arg(long, value_name = "FORMAT", value_parser = files::parse_format)]
+    to: Option<Format>,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, Debug, clap::ValueEnum)]
+enum ObjectiveArg {
+    /// The largest least scaled Jacobian.
+    Sj,
+    /// The smallest condition number with 95 % of the best scaled Jacobian.
+    Balanced,
+    /// Valid cells, no more.
+    Untangle,
+}
+
+#[derive(Serialize)]
+struct Output {
+    file: Option<String>,
+    geometry: GeometryReport,
+}
+
+/// Embeds, judges, writes; exit code 1 if some hex is not certified.
+pub fn run(args: &EmbedArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
+    files::check_output(&args.output, args.to)?;
+    let mut data = files::read_data(&args.mesh, args.from)?;
+    for note in std::mem::take(&mut data.notes) {
+        console.note(note);
+    }
+    if data.hexes.is_empty() {
+        bail!("{} has no hexes; give a hex mesh (`hexfill fill` makes one from a surface)", args.mesh);
+    }
+    if !data.has_coordinates {
+        bail!("{} has no coordinates; `hexfill fill` places the boundary of a surface without any", args.mesh);
+    }
+    let mesh = HexMesh::try_new(data.points.len(), &data.hexes)?;
+    let mut options = Options::new(match args.objective {
+        ObjectiveArg::Sj => Objective::ScaledJacobian,
+        ObjectiveArg::Balanced => Objective::Balanced,
+        ObjectiveArg::Untangle => Objective::UntangleOnly,
+    });
+    options.starts = args.starts;
+    let start = (!args.fresh).then_some(data.points.as_slice());
+    let made = embed(&mesh, &data.points, start, &options, ctx)?;
+    let judged = Judged::connectivity(mesh.n_vertices(), &data.hexes).with_points(&made.points);
+    let cells = cell_quality(&judged).into_iter().flatten().collect();
+    let stop = made.report.stop;
+    let placed = Placed { points: made.points, cells, embedding: Some(made.report) };
+    let valid = placed.is_certified();
+    let report = placed.report();
+    console.say(report.to_string());
+    let written = valid || !args.require_valid;
+    if written {
+        placed.flag(&mut data);
+        data.points.clone_from(&placed.points);
+        files::write_data(&args.output, args.to, &data)?;
+        console.say(format!("written: {}", args.output));
+    } else {
+        console.say("nothing written: some hexes are not certified, and --require-valid was given");
+    }
+    if console.json && args.output != "-" {
+        console.print_json(&Output { file: written.then(|| args.output.clone()), geometry: report })?;
+    }
+    Ok(Exit::of_stop(stop, if valid { Exit::Done } else { Exit::No }))
+}
