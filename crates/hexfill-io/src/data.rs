@@ -6,6 +6,7 @@
 
 use crate::error::WriteError;
 use crate::format::Format;
+use hexfill_mesh::{HexMesh, HexMeshError, QuadSurface, SurfaceError};
 
 /// A face that is no quad.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -129,6 +130,26 @@ impl MeshData {
 
     pub(crate) fn hex_tag(&self, hex: usize) -> i64 {
         self.hex_tags.as_ref().and_then(|tags| tags.get(hex)).copied().unwrap_or(0)
+    }
+
+    /// The faces as a closed surface.
+    ///
+    /// # Errors
+    /// [`SurfaceError`]; faces that are not quads are named by their position in the file.
+    pub fn quad_surface(&self) -> Result<QuadSurface, SurfaceError> {
+        if self.other_faces.is_empty() {
+            return QuadSurface::try_new(self.vertex_count(), &self.quads);
+        }
+        let faces: Vec<&[u32]> = self.faces().collect();
+        QuadSurface::try_from_polygons(self.vertex_count(), &faces)
+    }
+
+    /// The hexes as a mesh.
+    ///
+    /// # Errors
+    /// [`HexMeshError`].
+    pub fn hex_mesh(&self) -> Result<HexMesh, HexMeshError> {
+        HexMesh::try_new(self.vertex_count(), &self.hexes)
     }
 
     /// The same without cells: what a surface format can hold.

@@ -9,6 +9,7 @@ up to the 24 rotations of the cube, never up to reflections, and their volume mu
 
 import itertools
 import json
+import os
 import pathlib
 import sys
 
@@ -420,18 +421,18 @@ def write_gmsh(directory, due):
                 gmsh.option.setNumber("Mesh.MshFileVersion", version)
                 gmsh.option.setNumber("Mesh.Binary", binary)
                 name = f"gmsh-{version}-{'binary' if binary else 'ascii'}.msh"
-                gmsh.write(str(directory / name))
+                gmsh.write(name)
                 yield name, "exact" if binary else "single", "tags", "both"
         # In these every entity is to be saved, not only what is in a physical group (nothing changes here but the names).
         gmsh.option.setNumber("Mesh.SaveAll", 1)
         for binary in (0, 1):
             gmsh.option.setNumber("Mesh.Binary", binary)
             name = f"gmsh-{'binary' if binary else 'ascii'}.vtk"
-            gmsh.write(str(directory / name))
+            gmsh.write(name)
             yield name, "single", "notags", "both"
         gmsh.option.setNumber("Mesh.Binary", 0)
         for name, cells in [("gmsh.mesh", "both"), ("gmsh.inp", "both"), ("gmsh.off", "quads")]:
-            gmsh.write(str(directory / name))
+            gmsh.write(name)
             yield name, "single", "notags", cells
     finally:
         gmsh.finalize()
@@ -443,6 +444,7 @@ def main():
         check(directory)
         return
     due = load_expected(directory)
+    os.chdir(directory)  # Gmsh writes the path it is given into some files
     for writer in (write_meshio, write_pyvista, write_gmsh):
         for line in writer(directory, due):
             print(*line)

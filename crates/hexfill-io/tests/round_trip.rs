@@ -93,6 +93,25 @@ fn compressed_files_in_a_directory() {
 }
 
 #[test]
+fn surfaces_and_meshes_come_out_and_bad_faces_are_named() {
+    let mesh = chiral_for(Format::Vtk);
+    let mut surface = mesh.surface_only();
+    assert_eq!(surface.quad_surface().unwrap().genus(), 0);
+    let boundary = |quads: &mut dyn Iterator<Item = [u32; 4]>| {
+        let mut quads: Vec<_> = quads.map(|q| common::quad_key(&q)).collect();
+        quads.sort_unstable();
+        quads
+    };
+    let of_hexes = mesh.hex_mesh().unwrap().boundary_quads();
+    assert_eq!(boundary(&mut of_hexes.iter().map(|q| q.map(|v| v.0))), boundary(&mut surface.quads.iter().copied()));
+    surface.quads.remove(7);
+    let message = surface.quad_surface().unwrap_err().to_string();
+    assert!(message.contains("open"), "{message}");
+    let message = mixed().quad_surface().unwrap_err().to_string();
+    assert!(message.contains("face 0 (3 sides)") && message.contains("face 12 (5 sides)"), "{message}");
+}
+
+#[test]
 fn connectivity_without_coordinates() {
     let mut mesh = chiral_for(Format::Json);
     mesh.points.clear();

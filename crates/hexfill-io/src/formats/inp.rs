@@ -191,12 +191,12 @@ fn open_block(r: &mut Reader<'_>, text: &str, parts: &mut u32) -> Result<Block, 
                 return Err(r.s.malformed_text("`TYPE=` of the elements", given, "add it, as in *ELEMENT, TYPE=C3D8"));
             };
             let name = name.to_ascii_uppercase();
-            let set = get("ELSET").map(|set| r.names.stand_in(set));
+            let set = get("ELSET").map(|set| r.names.stand_in(&set.to_ascii_uppercase()));
             Block::Elements { kind: kind_of(&name), name, set }
         }
         "*ELSET" => match get("ELSET") {
             Some(name) => {
-                let set = r.names.stand_in(name);
+                let set = r.names.stand_in(&name.to_ascii_uppercase());
                 Block::ElementSet { set, generate: get("GENERATE").is_some() }
             }
             None => Block::Nothing,

@@ -110,3 +110,80 @@ pub fn assert_same(found: &MeshData, due: &MeshData, what: &str) {
     };
     assert_eq!(rest(found), rest(due), "{what}");
 }
+
+/// A hex or quad is the same whatever corner comes first; its orientation is kept by comparing over rotations only.
+fn hex_key(hex: &[u32; 8]) -> [u32; 8] {
+    let rotations = &hexfill_mesh::cube::symmetries()[..24];
+    rotations.iter().map(|s| s.map(|i| hex[i])).min().unwrap()
+}
+
+pub fn quad_key(quad: &[u32; 4]) -> [u32; 4] {
+    let mut quad = *quad;
+    let start = (0..4).min_by_key(|&k| quad[k]).unwrap();
+    quad.rotate_left(start);
+    quad
+}
+
+fn sorted<T: Ord>(items: impl Iterator<Item = T>) -> Vec<T> {
+    let mut items: Vec<T> = items.collect();
+    items.sort();
+    items
+}
+
+/// Compares node sets, connectivity with orientation, and tags, after matching the points by position.
+pub fn compare(found: &MeshData, due: &MeshData, exact: bool, tags: bool, what: &str) {
+    assert_eq!(found.points.len(), due.points.len(), "{what}");
+    let tolerance = if exact { 0.0 } else { 1e-5 };
+    let map: Vec<u32> = found
+        .points
+        .iter()
+        .map(|p| {
+            let same = |q: &[f64; 3]| (0..3).all(|k| (p[k] - q[k]).abs() <= tolerance);
+            due.points.iter().position(same).unwrap_or_else(|| panic!("{what}: {p:?} is no point")) as u32
+        })
+        .collect();
+    let quads = |m: &MeshData, map: &dyn Fn(u32) -> u32| {
+        sorted(
+            m.quads
+                .iter()
+                .enumerate()
+                .map(|(i, q)| (quad_key(&q.map(map)), m.quad_tags.as_ref().map_or(0, |t| if tags { t[i] } else { 0 }))),
+        )
+    };
+    let hexes = |m: &MeshData, map: &dyn Fn(u32) -> u32| {
+        sorted(
+            m.hexes
+                .iter()
+                .enumerate()
+                .map(|(i, h)| (hex_key(&h.map(map)), m.hex_tags.as_ref().map_or(0, |t| if tags { t[i] } else { 0 }))),
+        )
+    };
+    let there = |v: u32| map[v as usize];
+    assert_eq!(quads(found, &there), quads(due, &|v| v), "quads of {what}");
+    assert_eq!(hexes(found, &there), hexes(due, &|v| v), "hexes of {what}");
+}
+
+/// Reads the files of a list and compares them with the chiral mesh. A line is: name, `exact` or `single` precision,
+/// `tags` or `notags`, and what is in it: `quads`, `hexes` or `both`.
+pub fn compare_list(directory: &std::path::Path, list: &str) -> usize {
+    let mesh = chiral();
+    let mut count = 0;
+    for line in list.lines().filter(|l| !l.starts_with('#')) {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let [name, precision, tags, cells] = words[..] else { panic!("{line}") };
+        let found = hexfill_io::read_path(&directory.join(name), None).unwrap_or_else(|e| panic!("{e}"));
+        let mut due = mesh.clone();
+        match cells {
+            "both" => {}
+            "quads" => due = due.surface_only(),
+            "hexes" => {
+                due.quads.clear();
+                due.quad_tags = None;
+            }
+            other => panic!("{other}"),
+        }
+        compare(&found, &due, precision == "exact", tags == "tags", name);
+        count += 1;
+    }
+    count
+}
