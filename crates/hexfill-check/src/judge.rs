@@ -5,6 +5,7 @@ use crate::geometry::positions::{judge_jacobians, judge_positions};
 use crate::geometry::quality::measure;
 use crate::geometry::volume::enclosed;
 use crate::input::{Judged, Options, Parts};
+use crate::parallel::{piece, tasks, tasks_with};
 use crate::report::{Ball, Facts, Findings, Geometry, LevelReport, Offender, Outcome, Report};
 use crate::rule::{Level, Rule, Rules};
 use crate::topology::boundary::{compare, parts};
@@ -15,7 +16,6 @@ use crate::topology::star::{BoundaryQuad, StarJudge, StarRules, StarSums};
 use crate::topology::stars::Stars;
 use crate::topology::weill::replay;
 use hexfill_mesh::{Context, StopReason};
-use rayon::prelude::*;
 
 /// Vertices judged as one task; fixed, so that results do not depend on the number of threads.
 const CHUNK: usize = 1 << 12;
@@ -129,11 +129,9 @@ impl Run<'_> {
                 return Err(stopped(reason));
             }
             self.ctx.report("check det J", (b * CHUNK * BATCH) as u64, Some(hexes.len() as u64), String::new);
-            let parts: Vec<Findings> = batch
-                .par_chunks(CHUNK)
-                .enumerate()
-                .map(|(i, chunk)| judge_jacobians((b * BATCH + i) * CHUNK, chunk, points))
-                .collect();
+            let parts = tasks(batch.len().div_ceil(CHUNK), |i| {
+                judge_jacobians((b * BATCH + i) * CHUNK, piece(batch, CHUNK, i), points)
+            });
             parts.into_iter().for_each(|part| self.findings.append(part));
         }
         self.done = 5;
@@ -160,27 +158,25 @@ impl Run<'_> {
     fn stars(&mut self, stars: &Stars, forest: &ParityForest) -> Result<StarSums, String> {
         let strict = self.options.rules == Rules::Strict;
         let rules = StarRules { proper: strict, links: strict };
-        let tasks = stars.len().div_ceil(CHUNK);
+        let n_tasks = stars.len().div_ceil(CHUNK);
         let mut sums = StarSums::default();
-        for first in (0..tasks).step_by(BATCH) {
+        for first in (0..n_tasks).step_by(BATCH) {
             if let Some(reason) = self.ctx.stop() {
                 return Err(stopped(reason));
             }
             let total = Some(stars.len() as u64);
             self.ctx.report("check stars", (first * CHUNK) as u64, total, String::new);
-            let last = (first + BATCH).min(tasks);
-            let parts: Vec<StarSums> = (first..last)
-                .into_par_iter()
-                .map_init(
-                    || StarJudge::new(self.input.hexes, forest, rules),
-                    |star, task| {
-                        for v in task * CHUNK..((task + 1) * CHUNK).min(stars.len()) {
-                            star.judge(v as u32, stars.of(v as u32));
-                        }
-                        std::mem::take(&mut star.sums)
-                    },
-                )
-                .collect();
+            let last = (first + BATCH).min(n_tasks);
+            let parts = tasks_with(
+                last - first,
+                || StarJudge::new(self.input.hexes, forest, rules),
+                |star, i| {
+                    for v in (first + i) * CHUNK..((first + i + 1) * CHUNK).min(stars.len()) {
+                        star.judge(v as u32, stars.of(v as u32));
+                    }
+                    std::mem::take(&mut star.sums)
+                },
+            );
             for part in parts {
                 sums.findings.append(part.findings);
                 sums.used += part.used;

@@ -19,6 +19,7 @@ mod certificate;
 mod geometry;
 mod input;
 mod judge;
+mod parallel;
 mod report;
 mod rule;
 mod topology;

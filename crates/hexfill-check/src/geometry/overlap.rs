@@ -12,9 +12,9 @@
 //! norm of a convex hull, and checked with an error bound. What is not separated is not proved to overlap.
 
 use super::bernstein::{UNIT, Vector, dot, norm};
+use crate::parallel::tasks;
 use crate::topology::star::BoundaryQuad;
 use hexfill_mesh::Context;
-use rayon::prelude::*;
 use serde::Serialize;
 
 /// What the overlap test found.
@@ -166,23 +166,21 @@ pub(crate) fn overlap(
             return None;
         }
         ctx.report("check overlap", first as u64, Some(boxes.len() as u64), String::new);
-        let found: Vec<(u64, Vec<[u32; 2]>)> = (first..(first + 4096).min(boxes.len()))
-            .into_par_iter()
-            .map(|i| {
-                let ([low, high], one) = boxes[i];
-                let (mut met, mut bad) = (0, Vec::new());
-                for &([other_low, other_high], two) in boxes[i + 1..].iter().take_while(|b| b.0[0][0] <= high[0]) {
-                    if (1..3).all(|k| other_low[k] <= high[k] && low[k] <= other_high[k]) {
-                        met += 1;
-                        let (a, b) = (boundary[one as usize].cycle, boundary[two as usize].cycle);
-                        if !separated(&a, &b, points) {
-                            bad.push([one.min(two), one.max(two)]);
-                        }
+        let found: Vec<(u64, Vec<[u32; 2]>)> = tasks(4096.min(boxes.len() - first), |i| {
+            let i = first + i;
+            let ([low, high], one) = boxes[i];
+            let (mut met, mut bad) = (0, Vec::new());
+            for &([other_low, other_high], two) in boxes[i + 1..].iter().take_while(|b| b.0[0][0] <= high[0]) {
+                if (1..3).all(|k| other_low[k] <= high[k] && low[k] <= other_high[k]) {
+                    met += 1;
+                    let (a, b) = (boundary[one as usize].cycle, boundary[two as usize].cycle);
+                    if !separated(&a, &b, points) {
+                        bad.push([one.min(two), one.max(two)]);
                     }
                 }
-                (met, bad)
-            })
-            .collect();
+            }
+            (met, bad)
+        });
         for (met, some) in found {
             pairs += met;
             bad.extend(some);

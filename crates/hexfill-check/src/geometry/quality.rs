@@ -5,6 +5,7 @@ use super::positivity::{Positivity, decide};
 use super::scaled::{Effort, least, normalised};
 use super::volume::Sum;
 use crate::input::Judged;
+use crate::parallel::{piece, tasks};
 use hexfill_mesh::Context;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -170,11 +171,8 @@ pub(crate) fn measure(
             return None;
         }
         ctx.report("check quality", (b * CHUNK * BATCH) as u64, Some(2 * hexes.len() as u64), String::new);
-        let parts: Vec<Sums> = batch
-            .par_chunks(CHUNK)
-            .enumerate()
-            .map(|(i, chunk)| sums((b * BATCH + i) * CHUNK, chunk, points))
-            .collect();
+        let parts =
+            tasks(batch.len().div_ceil(CHUNK), |i| sums((b * BATCH + i) * CHUNK, piece(batch, CHUNK, i), points));
         for part in parts {
             total.corner = total.corner.min(part.corner);
             total.verdict = total.verdict.min(part.verdict);
@@ -196,15 +194,10 @@ pub(crate) fn measure(
         }
         let done = (hexes.len() + b * CHUNK * BATCH) as u64;
         ctx.report("check quality", done, Some(2 * hexes.len() as u64), String::new);
-        let parts: Vec<(f64, f64)> = batch
-            .par_chunks(CHUNK)
-            .map(|chunk| {
-                chunk
-                    .iter()
-                    .map(|hex| least(&gather(hex, points), effort))
-                    .fold((1.0, 1.0), |(low, high), x| (f64::min(low, x.lower), f64::min(high, x.upper)))
-            })
-            .collect();
+        let parts = tasks(batch.len().div_ceil(CHUNK), |i| {
+            let intervals = piece(batch, CHUNK, i).iter().map(|hex| least(&gather(hex, points), effort));
+            intervals.fold((1.0, 1.0), |(low, high), x| (f64::min(low, x.lower), f64::min(high, x.upper)))
+        });
         for (low, high) in parts {
             lower = lower.min(low);
             upper = upper.min(high);

@@ -24,10 +24,10 @@ pub(crate) fn compare(
     stars: &Stars,
 ) -> (Findings, Option<SurfaceSense>) {
     let mut given: Vec<([u32; 4], u32)> =
-        surface.par_iter().enumerate().map(|(q, &cycle)| (canonical(cycle).0, q as u32)).collect();
+        surface.iter().enumerate().map(|(q, &cycle)| (canonical(cycle).0, q as u32)).collect();
     given.par_sort_unstable();
     let mut found: Vec<([u32; 4], u32)> =
-        boundary.par_iter().enumerate().map(|(b, quad)| (canonical(quad.cycle).0, b as u32)).collect();
+        boundary.iter().enumerate().map(|(b, quad)| (canonical(quad.cycle).0, b as u32)).collect();
     found.par_sort_unstable();
 
     let mut findings = Findings::default();
@@ -113,9 +113,9 @@ fn holders(quad: [u32; 4], hexes: &[[u32; 8]], stars: &Stars) -> Vec<u32> {
 /// boundary quads. A vertex where several sheets of the boundary touch counts once for each of them.
 pub(crate) fn parts(boundary: &[BoundaryQuad]) -> Option<Vec<BoundaryPart>> {
     let mut sides: Vec<(u64, u32)> = boundary
-        .par_iter()
+        .iter()
         .enumerate()
-        .flat_map_iter(|(b, quad)| {
+        .flat_map(|(b, quad)| {
             (0..4).map(move |i| {
                 let (x, y) = (quad.cycle[i], quad.cycle[(i + 1) % 4]);
                 (u64::from(x.min(y)) << 32 | u64::from(x.max(y)), (4 * b + i) as u32)

@@ -2,7 +2,7 @@
 
 use super::star::corner_table;
 use super::stars::Stars;
-use rayon::prelude::*;
+use crate::parallel::tasks;
 
 /// Vertices listed as one task.
 pub(crate) const CHUNK: usize = 1 << 12;
@@ -17,25 +17,22 @@ impl Edges {
     /// `None` if there are too many for a `u32`.
     pub(crate) fn new(hexes: &[[u32; 8]], stars: &Stars) -> Option<Self> {
         let table = corner_table();
-        let parts: Vec<(Vec<u32>, Vec<u32>)> = (0..stars.len().div_ceil(CHUNK))
-            .into_par_iter()
-            .map(|task| {
-                let (mut counts, mut ends, mut near) = (Vec::new(), Vec::new(), Vec::new());
-                for v in task * CHUNK..((task + 1) * CHUNK).min(stars.len()) {
-                    near.clear();
-                    for &code in stars.of(v as u32) {
-                        let hex = &hexes[(code >> 3) as usize];
-                        let corner = &table[(code & 7) as usize];
-                        near.extend(corner[..3].iter().map(|&k| hex[k]).filter(|&w| w > v as u32));
-                    }
-                    near.sort_unstable();
-                    near.dedup();
-                    counts.push(near.len() as u32);
-                    ends.extend_from_slice(&near);
+        let parts: Vec<(Vec<u32>, Vec<u32>)> = tasks(stars.len().div_ceil(CHUNK), |task| {
+            let (mut counts, mut ends, mut near) = (Vec::new(), Vec::new(), Vec::new());
+            for v in task * CHUNK..((task + 1) * CHUNK).min(stars.len()) {
+                near.clear();
+                for &code in stars.of(v as u32) {
+                    let hex = &hexes[(code >> 3) as usize];
+                    let corner = &table[(code & 7) as usize];
+                    near.extend(corner[..3].iter().map(|&k| hex[k]).filter(|&w| w > v as u32));
                 }
-                (counts, ends)
-            })
-            .collect();
+                near.sort_unstable();
+                near.dedup();
+                counts.push(near.len() as u32);
+                ends.extend_from_slice(&near);
+            }
+            (counts, ends)
+        });
         let total: usize = parts.iter().map(|p| p.1.len()).sum();
         if total >= u32::MAX as usize {
             return None;

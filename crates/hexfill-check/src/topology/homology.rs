@@ -14,8 +14,8 @@
 use super::cells::{CHUNK, Edges, quads_of_task};
 use super::star::corner_table;
 use super::stars::Stars;
+use crate::parallel::{piece, tasks};
 use hexfill_mesh::Context;
-use rayon::prelude::*;
 
 /// Tasks listed between two steps of the sequential union-find.
 const BATCH: usize = 64;
@@ -86,18 +86,16 @@ pub(crate) fn homology(hexes: &[[u32; 8]], stars: &Stars, closed: u64, ctx: &Con
 /// The quads outside a spanning forest of the dual graph, each as its four edges.
 fn spine(hexes: &[[u32; 8]], stars: &Stars, edges: &Edges, ctx: &Context<'_>) -> Option<Vec<[u32; 4]>> {
     let table = corner_table();
-    let tasks = stars.len().div_ceil(CHUNK);
+    let n_tasks = stars.len().div_ceil(CHUNK);
     let outside = hexes.len() as u32;
     let mut dual = Forest::new(hexes.len() + 1);
     let mut kept = Vec::new();
-    for first in (0..tasks).step_by(BATCH) {
+    for first in (0..n_tasks).step_by(BATCH) {
         if ctx.stop().is_some() {
             return None;
         }
-        let lists: Vec<_> = (first..(first + BATCH).min(tasks))
-            .into_par_iter()
-            .map(|task| quads_of_task(task, hexes, stars, &table))
-            .collect();
+        let last = (first + BATCH).min(n_tasks);
+        let lists = tasks(last - first, |i| quads_of_task(first + i, hexes, stars, &table));
         let left: Vec<[u32; 4]> = lists
             .into_iter()
             .flatten()
@@ -107,10 +105,12 @@ fn spine(hexes: &[[u32; 8]], stars: &Stars, edges: &Edges, ctx: &Context<'_>) ->
             })
             .map(|quad| quad.cycle)
             .collect();
-        kept.par_extend(
-            left.par_iter()
-                .map(|&[a, b, c, d]| [edges.index(a, b), edges.index(b, c), edges.index(c, d), edges.index(d, a)]),
-        );
+        let indexed = tasks(left.len().div_ceil(CHUNK), |i| {
+            let sides =
+                |&[a, b, c, d]: &[u32; 4]| [edges.index(a, b), edges.index(b, c), edges.index(c, d), edges.index(d, a)];
+            piece(&left, CHUNK, i).iter().map(sides).collect::<Vec<_>>()
+        });
+        indexed.into_iter().for_each(|part| kept.extend(part));
     }
     Some(kept)
 }

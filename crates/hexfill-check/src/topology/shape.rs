@@ -2,9 +2,9 @@
 
 use super::stars::MAX_HEXES;
 use crate::input::Judged;
+use crate::parallel::{piece, tasks};
 use crate::report::{Findings, Offender};
 use crate::rule::Rule;
-use rayon::prelude::*;
 
 const CHUNK: usize = 1 << 14;
 
@@ -30,19 +30,13 @@ pub(crate) fn judge_shape(input: &Judged<'_>) -> (Findings, usize) {
         return (findings, 0);
     }
     let n = input.n_vertices;
-    let parts: Vec<(Findings, usize)> = input
-        .hexes
-        .par_chunks(CHUNK)
-        .enumerate()
-        .map(|(chunk, hexes)| cells(chunk * CHUNK, hexes, n, Rule::IndexOutOfRange, Rule::HexRepeatsVertex))
-        .collect();
-    let surface_parts: Vec<(Findings, usize)> = quads
-        .par_chunks(CHUNK)
-        .enumerate()
-        .map(|(chunk, quads)| {
-            cells(chunk * CHUNK, quads, n, Rule::SurfaceIndexOutOfRange, Rule::SurfaceQuadRepeatsVertex)
-        })
-        .collect();
+    let parts = tasks(input.hexes.len().div_ceil(CHUNK), |i| {
+        let hexes = piece(input.hexes, CHUNK, i);
+        cells(i * CHUNK, hexes, n, Rule::IndexOutOfRange, Rule::HexRepeatsVertex)
+    });
+    let surface_parts = tasks(quads.len().div_ceil(CHUNK), |i| {
+        cells(i * CHUNK, piece(quads, CHUNK, i), n, Rule::SurfaceIndexOutOfRange, Rule::SurfaceQuadRepeatsVertex)
+    });
     let mut used = 0;
     for (part, top) in parts.into_iter().chain(surface_parts) {
         findings.append(part);

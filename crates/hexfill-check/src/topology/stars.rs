@@ -12,16 +12,19 @@ pub(crate) struct Stars {
     codes: Vec<u32>,
 }
 
+/// Fewer hexes than this are sorted by the caller alone.
+const SMALL: usize = 1 << 15;
+
 /// Most hexes that can be judged: a code `8 * hex + corner` is a `u32`.
 pub(crate) const MAX_HEXES: usize = (u32::MAX / 8) as usize;
 
 impl Stars {
     /// The stars of vertices `0..n`; every index in `hexes` is below `n`, at most [`MAX_HEXES`] hexes.
     pub(crate) fn new(n: usize, hexes: &[[u32; 8]]) -> Self {
-        let ranges = rayon::current_num_threads().clamp(1, 8);
+        let ranges = if hexes.len() < SMALL { 1 } else { rayon::current_num_threads().clamp(1, 8) };
         let step = n.div_ceil(ranges).max(1);
         let mut offsets = vec![0u32; n + 1];
-        offsets[1..].par_chunks_mut(step).enumerate().for_each(|(r, counts)| {
+        let count = |(r, counts): (usize, &mut [u32])| {
             let low = (r * step) as u32;
             for hex in hexes {
                 for &v in hex {
@@ -30,7 +33,12 @@ impl Stars {
                     }
                 }
             }
-        });
+        };
+        if ranges == 1 {
+            count((0, &mut offsets[1..]));
+        } else {
+            offsets[1..].par_chunks_mut(step).enumerate().for_each(count);
+        }
         let mut sum = 0;
         for o in &mut offsets[1..] {
             sum += *o;
@@ -46,7 +54,7 @@ impl Stars {
             parts.push((low, high, part));
             rest = tail;
         }
-        parts.into_par_iter().for_each(|(low, high, part)| {
+        let fill = |(low, high, part): (usize, usize, &mut [u32])| {
             let base = offsets[low];
             let mut next: Vec<u32> = offsets[low..high].iter().map(|&o| o - base).collect();
             for (h, hex) in hexes.iter().enumerate() {
@@ -57,7 +65,12 @@ impl Stars {
                     }
                 }
             }
-        });
+        };
+        if ranges == 1 {
+            parts.into_iter().for_each(fill);
+        } else {
+            parts.into_par_iter().for_each(fill);
+        }
         Self { offsets, codes }
     }
 
