@@ -92,6 +92,30 @@ fn compressed_files_in_a_directory() {
     std::fs::remove_dir_all(&directory).unwrap();
 }
 
+#[cfg(unix)]
+#[test]
+fn links_and_permissions_are_kept() {
+    use std::os::unix::fs::PermissionsExt;
+    let directory = std::env::temp_dir().join(format!("hexfill-io-unix-{}", std::process::id()));
+    std::fs::create_dir_all(&directory).unwrap();
+    let mode = |name: &str| std::fs::metadata(directory.join(name)).unwrap().permissions().mode() & 0o777;
+    let write = |name: &str| write_path_with(&directory.join(name), None, &chiral_for(Format::Vtk), Encoding::Text);
+    // A new file has the permissions of any new file.
+    std::fs::write(directory.join("plain"), "").unwrap();
+    write("new.vtk").unwrap();
+    assert_eq!(mode("new.vtk"), mode("plain"));
+    // An old one keeps its own; a link stays a link.
+    std::fs::set_permissions(directory.join("new.vtk"), std::fs::Permissions::from_mode(0o640)).unwrap();
+    std::os::unix::fs::symlink("new.vtk", directory.join("link.vtk")).unwrap();
+    write("link.vtk").unwrap();
+    assert!(std::fs::symlink_metadata(directory.join("link.vtk")).unwrap().is_symlink());
+    assert_eq!(mode("new.vtk"), 0o640);
+    // A device is written to, not replaced.
+    write_path_with("/dev/null".as_ref(), Some(Format::Vtk), &chiral_for(Format::Vtk), Encoding::Text).unwrap();
+    assert!(!std::fs::metadata("/dev/null").unwrap().is_file());
+    std::fs::remove_dir_all(&directory).unwrap();
+}
+
 #[test]
 fn surfaces_and_meshes_come_out_and_bad_faces_are_named() {
     let mesh = chiral_for(Format::Vtk);

@@ -1,5 +1,6 @@
 //! MEDIT `.mesh` (ASCII): sections of a keyword, a count and that many lines, each line ending in a reference number (the tag).
 //!
+//! Written are quads first, then triangles: their order among each other is not kept.
 //! Sections that are not about points, faces and cells (corners, ridges, normals ...) are passed over. `End` closes the file.
 
 use crate::assembly::Assembly;
