@@ -1,5 +1,7 @@
-//! Speed of the parts and of whole levels. Dated results are in `record/`.
+//! Speed of the parts (processor time, so that a busy machine does not disturb) and of whole levels (time that passes).
+//! Dated results are in `record/`.
 
+use criterion::measurement::{Measurement, ValueFormatter, WallTime};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use hexfill_enumerate::{
     Chunk, Code, Complex, LevelOptions, Params, Plan, Rule, StrictOptions, Wanted, all_levels, canonical,
@@ -7,6 +9,45 @@ use hexfill_enumerate::{
 };
 use hexfill_mesh::Context;
 use std::hint::black_box;
+
+/// Processor time of this thread in nanoseconds where Linux tells it, else time that passes.
+struct ProcessorTime(WallTime);
+
+impl Measurement for ProcessorTime {
+    type Intermediate = (Option<u64>, <WallTime as Measurement>::Intermediate);
+    type Value = std::time::Duration;
+
+    fn start(&self) -> Self::Intermediate {
+        (thread_nanoseconds(), self.0.start())
+    }
+
+    fn end(&self, (start, wall): Self::Intermediate) -> Self::Value {
+        match (start, thread_nanoseconds()) {
+            (Some(start), Some(end)) => std::time::Duration::from_nanos(end - start),
+            _ => self.0.end(wall),
+        }
+    }
+
+    fn add(&self, a: &Self::Value, b: &Self::Value) -> Self::Value {
+        *a + *b
+    }
+
+    fn zero(&self) -> Self::Value {
+        std::time::Duration::ZERO
+    }
+
+    fn to_f64(&self, value: &Self::Value) -> f64 {
+        value.as_nanos() as f64
+    }
+
+    fn formatter(&self) -> &dyn ValueFormatter {
+        self.0.formatter()
+    }
+}
+
+fn thread_nanoseconds() -> Option<u64> {
+    std::fs::read_to_string("/proc/thread-self/schedstat").ok()?.split(' ').next()?.parse().ok()
+}
 
 /// Every `step`-th class of a level under rule weill, decoded.
 fn sample(cubes: usize, step: usize) -> Vec<Complex> {
@@ -21,7 +62,7 @@ fn sample(cubes: usize, step: usize) -> Vec<Complex> {
     levels[cubes - 1].codes.iter().step_by(step).map(|c: &Code| c.decode().expect("a code just made")).collect()
 }
 
-fn parts(c: &mut Criterion) {
+fn parts(c: &mut Criterion<ProcessorTime>) {
     let seven = sample(7, 384);
     let mut group = c.benchmark_group("seven cubes");
     group.throughput(Throughput::Elements(seven.len() as u64));
@@ -79,5 +120,10 @@ fn levels(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, parts, levels);
-criterion_main!(benches);
+criterion_group! {
+    name = of_parts;
+    config = Criterion::default().with_measurement(ProcessorTime(WallTime));
+    targets = parts
+}
+criterion_group!(of_levels, levels);
+criterion_main!(of_parts, of_levels);
