@@ -1,0 +1,54 @@
+//! Surfaces of others: a sphere of 1,192 quads and a pen holder of genus 8.
+
+use hexfill_check::{Judged, Level, judge};
+use hexfill_construct::{Existence, Options, construct, existence};
+use hexfill_mesh::{Context, QuadSurface};
+
+/// Vertices and faces of a Wavefront OBJ file.
+fn parse_obj(text: &str) -> (Vec<[f64; 3]>, Vec<Vec<u32>>) {
+    let (mut points, mut faces) = (Vec::new(), Vec::new());
+    for line in text.lines() {
+        let mut words = line.split_whitespace();
+        match words.next() {
+            Some("v") => {
+                let p: Vec<f64> = words.take(3).map(|w| w.parse().unwrap()).collect();
+                points.push([p[0], p[1], p[2]]);
+            }
+            Some("f") => {
+                let index = |w: &str| w.split('/').next().unwrap().parse::<u32>().unwrap() - 1;
+                faces.push(words.map(index).collect());
+            }
+            _ => {}
+        }
+    }
+    (points, faces)
+}
+
+fn fill(text: &str, n_quads: usize, genus: u64) -> f64 {
+    let (points, faces) = parse_obj(text);
+    let surface = QuadSurface::try_from_polygons(points.len(), &faces).unwrap();
+    assert_eq!((surface.n_quads(), surface.genus(), surface.n_components()), (n_quads, genus, 1));
+    assert!(matches!(existence(&surface, Some(&points)), Existence::Exists { .. }));
+    let made = construct(&surface, Some(&points), &Options::default(), &Context::default()).unwrap();
+    println!("{}", made.report);
+    let hexes: Vec<[u32; 8]> = made.mesh.hexes().iter().map(|h| h.map(|v| v.0)).collect();
+    let quads: Vec<[u32; 4]> = surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
+    let input = Judged::connectivity(made.mesh.n_vertices(), &hexes).with_surface(&quads);
+    let report = judge(&input, &hexfill_check::Options::default().up_to(Level::L3).betti(false), &Context::default());
+    assert!(report.passed(Level::L3), "{:?}", report.failures);
+    let start = made.start.unwrap();
+    assert_eq!(start.len(), made.mesh.n_vertices());
+    assert!(start.iter().zip(&points).all(|(a, b)| a.map(f64::to_bits) == b.map(f64::to_bits)));
+    assert!(start.iter().flatten().all(|x| x.is_finite()));
+    made.report.hexes_per_quad()
+}
+
+#[test]
+fn cubespikes() {
+    assert!(fill(include_str!("../../../corpus/surfaces/cubespikes.obj"), 1192, 0) <= 46.0);
+}
+
+#[test]
+fn bamboo_pen() {
+    assert!(fill(include_str!("../../../corpus/surfaces/bamboo_pen.obj"), 1160, 8) <= 70.0);
+}
