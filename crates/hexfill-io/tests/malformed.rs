@@ -141,9 +141,17 @@ fn indices_must_exist() {
     says(Format::Json, r#"{"boundary_quads": [[0,1,2,1000000000]]}"#, &["1000000000", "renumber"]);
 }
 
+/// Most address space this process has ever had, in bytes (Linux; elsewhere 0): reserving counts, touched or not.
+fn peak_memory() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|l| l.strip_prefix("VmPeak:")).unwrap_or_default();
+    line.split_whitespace().next().and_then(|n| n.parse::<u64>().ok()).unwrap_or(0) * 1024
+}
+
 #[test]
 fn a_small_file_cannot_claim_a_huge_mesh() {
     let started = Instant::now();
+    let before = peak_memory();
     let n = 1_000_000_000;
     let head = "MeshVersionFormatted 2\nDimension 3\n";
     let cases: Vec<(Format, String)> = vec![
@@ -195,6 +203,8 @@ fn a_small_file_cannot_claim_a_huge_mesh() {
     let huge = "99999999999";
     says(Format::Off, format!("OFF\n{huge} 1 0\n"), &["in.file:2", huge, "4294967295"]);
     says(Format::Off, "OFF\n-1 1 0\n", &["in.file:2", "-1"]);
+    // A billion points would be 24 GB, a billion faces 16 GB. (Other tests, and arenas for their threads, run beside this one.)
+    assert!(peak_memory() - before < 3 << 30, "{} bytes more", peak_memory() - before);
     assert!(started.elapsed().as_secs() < 5, "no time is spent on claims");
 }
 
