@@ -69,9 +69,9 @@ impl Canonical {
             *at = at.wrapping_add(scatter(near)).wrapping_add(scatter(far + 64));
         }
         let mut dart_colour = [0u32; MAX_DARTS];
-        for d in 0..n_darts {
-            let v = usize::from(cavity.origin[d]);
-            dart_colour[d] = (colour[v] ^ colour[v] >> 15).wrapping_add(u32::from(degrees[v]) << 27);
+        for (slot, &v) in dart_colour.iter_mut().zip(&cavity.origin[..n_darts]) {
+            let v = usize::from(v);
+            *slot = (colour[v] ^ colour[v] >> 15).wrapping_add(u32::from(degrees[v]) << 27);
         }
         // Flag kinds: the colours round the quad in the flag's order, hashed to a byte.
         let mut kinds = [[0u8; 2]; MAX_DARTS];

@@ -45,8 +45,8 @@ pub(crate) type PackedPairs = [u64; PAIR_WORDS];
 
 fn pack(pairs: &Pairs, n_vertices: usize) -> PackedPairs {
     let mut packed = [0; PAIR_WORDS];
-    for b in 1..n_vertices {
-        let row = pairs[b] & ((1 << b) - 1);
+    for (b, row) in pairs.iter().enumerate().take(n_vertices).skip(1) {
+        let row = row & ((1 << b) - 1);
         let (word, bit) = ((b * (b - 1) / 2) / 64, (b * (b - 1) / 2) % 64);
         packed[word] |= row << bit;
         if bit + b > 64 {
@@ -324,6 +324,7 @@ impl Growth {
         let done = AtomicU64::new(0);
         let total = self.frontier.len() as u64;
         let level = self.level() + 1;
+        let start = std::time::Instant::now();
         self.frontier.par_chunks(256).for_each_init(Canonical::new, |canonical, chunk| {
             if stop.load(Ordering::Relaxed) {
                 return;
@@ -340,7 +341,13 @@ impl Growth {
             let so_far = done.fetch_add(chunk.len() as u64, Ordering::Relaxed) + chunk.len() as u64;
             if so_far.is_multiple_of(256) {
                 ctx.report("atlas level", so_far, Some(total), || {
-                    format!("level {level}: {} classes, {} states so far", self.n_classes(), self.n_states())
+                    let rate = children.load(Ordering::Relaxed) as f64 / start.elapsed().as_secs_f64();
+                    format!(
+                        "{level} hexes, {} classes, {} states, {rate:.0} flips/s, {} MB",
+                        self.n_classes(),
+                        self.n_states(),
+                        self.memory() >> 20
+                    )
                 });
             }
         });

@@ -269,9 +269,6 @@ fn grow_towards(
         if let Some(log) = &mut log {
             log.append(&growth, &report)?;
         }
-        ctx.report("atlas level", u64::from(report.level), None, || {
-            format!("{} classes, {} states, {} MB", report.classes, report.states, growth.memory() >> 20)
-        });
     }
     result.tried.push(format!(
         "growth with cap {} and width {} to {} hexes: {} classes",
