@@ -148,7 +148,7 @@ fn work(args: &Args, job: &Job, world: &SimpleCommunicator) -> anyhow::Result<()
             Answer::Failed(chunk, "told to fail".into())
         } else {
             match job.plan.run(chunk, job.wanted(), &Context::default()) {
-                Ok(result) => Answer::Done(result.into()),
+                Ok(result) => Answer::Done(Box::new(result.into())),
                 Err(error) => Answer::Failed(chunk, error.to_string()),
             }
         };
@@ -215,7 +215,7 @@ fn manage(args: &Args, job: &Job, world: &SimpleCommunicator) -> anyhow::Result<
                 }
             }
             Answer::Done(result) => {
-                totals.take(&result.try_into()?, job)?;
+                totals.take(&(*result).try_into()?, job)?;
                 book.done();
             }
             Answer::Failed(chunk, why) => book.failed(rank, chunk, &why),

@@ -14,7 +14,7 @@ pub enum Answer {
     /// Give me work.
     Ready,
     /// A finished chunk.
-    Done(Finished),
+    Done(Box<Finished>),
     /// The chunk could not be done, and why. The worker leaves.
     Failed(Chunk, String),
 }

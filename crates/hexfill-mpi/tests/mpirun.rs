@@ -27,7 +27,9 @@ fn totals_do_not_depend_on_the_number_of_ranks() {
     for rule in ["strict", "weill"] {
         let mut first = None;
         for ranks in [1, 2, 4] {
-            let Some(output) = mpirun(ranks, &["6", "--rule", rule, "--chunks", "40", "--find", "6x[4,4]"]) else { return };
+            let Some(output) = mpirun(ranks, &["6", "--rule", rule, "--chunks", "40", "--find", "6x[4,4]"]) else {
+                return;
+            };
             assert!(output.status.success());
             let report = json(&output);
             assert_eq!(report["counts"]["classes"], if rule == "strict" { 4026 } else { 9500 });
