@@ -228,10 +228,10 @@ impl Cutting {
             join(left(i) + 2, left(j) + 1);
             // Right fan i: c e, e centre, centre c; its spoke from e is that of fan j from its c.
             join(right(i) + 1, right(j) + 2);
-            for k in 0..self.width {
+            for (k, slot) in potential.iter_mut().enumerate() {
                 let value = self.inside[self.width * d as usize + k];
                 let mut set = |x: u32, y: i64| self.inside[self.width * x as usize + k] = y;
-                let (here, there) = (potential[k], potential[k] + value);
+                let (here, there) = (*slot, *slot + value);
                 // w(v -> centre) = -potential(v).
                 set(left(i), -value);
                 set(left(i) + 1, -here);
@@ -239,7 +239,7 @@ impl Cutting {
                 set(right(i), value);
                 set(right(i) + 1, -there);
                 set(right(i) + 2, here);
-                potential[k] = there;
+                *slot = there;
             }
             self.glued.push([left(i) / 3, right(i) / 3]);
         }

@@ -72,10 +72,9 @@ pub fn sigma(
     let mut seen: BTreeSet<Form> = BTreeSet::new();
     for d in surface.darts().filter(|&d| d < surface.twin(d)) {
         let equation = sum(&sum(at(surface.origin(d)), at(surface.target(d))), &form(d));
-        if equation.iter().any(|&w| w != 0) && seen.insert(equation.clone()) {
-            if let Err(sources) = system.add(equation, Some(d)) {
-                return Err(odd_cycle(surface, &parent, &sources));
-            }
+        let new = equation.iter().any(|&w| w != 0) && seen.insert(equation.clone());
+        if new && let Err(sources) = system.add(equation, Some(d)) {
+            return Err(odd_cycle(surface, &parent, &sources));
         }
     }
     let solution = system.solve(width);

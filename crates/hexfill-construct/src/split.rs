@@ -152,8 +152,7 @@ pub fn split_tets(complex: &TetComplex, cut: &[bool], points: &CorePoints, hexes
             points.face[id][usize::from(alike != 1)]
         };
         let z = |i: usize| points.tet[t][usize::from(side[i])];
-        for i in 0..4 {
-            let [j, k, l] = OUTWARD[i];
+        for (i, &[j, k, l]) in OUTWARD.iter().enumerate() {
             hexes.push([v(i), e(i, j), f(l, i), e(i, k), e(i, l), f(k, i), z(i), f(j, i)]);
         }
         for (n, &[i, j]) in TET_EDGES.iter().enumerate() {

@@ -119,11 +119,10 @@ impl TetComplex {
         // Boundary faces as (sorted vertices, outward parity, face).
         let mut have: Vec<([u32; 3], [u32; 3], u32)> = Vec::new();
         for (t, tet) in self.tets.iter().enumerate() {
-            for i in 0..4 {
+            for (i, outward) in OUTWARD.iter().enumerate() {
                 let f = self.tet_faces[t][i];
                 if degree[f as usize] == 1 {
-                    // Outward order of the face opposite vertex i.
-                    let [a, b, c] = OUTWARD[i].map(|k| tet[k]);
+                    let [a, b, c] = outward.map(|k| tet[k]);
                     have.push((sorted([a, b, c]), smallest_first([a, b, c]), f));
                 }
             }
