@@ -41,7 +41,7 @@ const LINE_EVERY: Duration = Duration::from_secs(5);
 
 impl Console {
     /// A console as the flags ask for.
-    pub fn new(common: &Common) -> Self {
+    pub(crate) fn new(common: &Common) -> Self {
         let on_terminal = std::io::stderr().is_terminal();
         let color = match common.color {
             ColorWhen::Always => true,
@@ -138,7 +138,7 @@ impl Console {
 
 fn bar_style(with_total: bool) -> ProgressStyle {
     let template = if with_total {
-        "{elapsed:>6} {bar:24} {pos}/{len} {per_sec} {wide_msg}"
+        "{elapsed:>6} {bar:24} {pos}/{len} {wide_msg}"
     } else {
         "{elapsed:>6} {spinner} {pos} {wide_msg}"
     };

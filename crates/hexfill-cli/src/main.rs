@@ -33,7 +33,7 @@ struct Cli {
 
 // Flags every command takes. (No doc comment: clap would print it as the description of the program.)
 #[derive(Args, Clone)]
-pub struct Common {
+pub(crate) struct Common {
     /// Threads to use [default: all cores].
     #[arg(short = 'j', long, global = true, value_name = "N")]
     pub threads: Option<usize>,
@@ -69,6 +69,9 @@ enum Command {
     /// Say what a surface or mesh is: genus, chords, key, signature, whether a hex mesh exists.
     #[command(visible_alias = "dual")]
     Info(commands::info::InfoArgs),
+    /// Move the interior vertices of a mesh until every hex is valid and good.
+    #[command(visible_alias = "untangle")]
+    Embed(commands::embed::EmbedArgs),
     /// Convert a surface or mesh between file formats.
     Convert(commands::convert::ConvertArgs),
     /// Write one HTML file that shows a mesh.
@@ -117,6 +120,7 @@ fn main() -> ExitCode {
         Command::Fill(args) => commands::fill::run(args, &console, &ctx),
         Command::Check(args) => commands::check::run(args, &console, &ctx),
         Command::Info(args) => commands::info::run(args, &console),
+        Command::Embed(args) => commands::embed::run(args, &console, &ctx),
         Command::Convert(args) => commands::convert::run(args, &console),
         Command::View(args) => commands::view::run(args, &console),
         Command::Catalog(args) => commands::catalog::run(args, &console),

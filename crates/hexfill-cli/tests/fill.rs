@@ -249,3 +249,47 @@ fn view_and_picture_are_written() {
     let (code, _, err) = hexfill(dir.path(), &["view", "m.vtk", "-o", "again.html"]);
     assert_eq!(code, 0, "{err}");
 }
+
+#[test]
+fn a_certificate_holds_for_its_mesh_and_for_no_other() {
+    let dir = tempfile::tempdir().unwrap();
+    let at = dir.path();
+    assert_eq!(hexfill(at, &["fill", ":octagonal-spindle", "-o", "m.vtk"]).0, 0);
+    let surface = ["--surface", ":octagonal-spindle"];
+    let check = |mesh: &str, more: &[&str]| hexfill(at, &[&["check", mesh], &surface[..], more].concat());
+    let (code, out, err) = check("m.vtk", &["--certificate", "c.json", "--csv", "cells.csv"]);
+    assert_eq!(code, 0, "{out}{err}");
+    assert_eq!(std::fs::read_to_string(at.join("cells.csv")).unwrap().lines().count(), 41);
+    assert_eq!(check("m.vtk", &["--verify-certificate", "c.json"]).0, 0);
+    let certificate = std::fs::read_to_string(at.join("c.json")).unwrap();
+    let forged = |name: &str, text: &str| {
+        std::fs::write(at.join(name), text).unwrap();
+        let (code, _, err) = check("m.vtk", &["--verify-certificate", name]);
+        assert_eq!(code, 1, "{name}: {err}");
+        assert!(err.contains("does not hold"), "{name}: {err}");
+    };
+    forged("digit.json", &certificate.replacen("0.2391", "0.2491", 1));
+    forged("cut.json", &certificate[..certificate.len() / 2]);
+    let moved = std::fs::read_to_string(at.join("m.vtk")).unwrap();
+    let line = moved.lines().nth(20).unwrap();
+    let other = moved.replacen(line, &line.replacen('1', "2", 1), 1);
+    if other != moved {
+        std::fs::write(at.join("other.vtk"), other).unwrap();
+        assert_eq!(check("other.vtk", &["--verify-certificate", "c.json"]).0, 1);
+    }
+}
+
+#[test]
+fn real_surfaces_are_constructed_and_judged() {
+    let dir = tempfile::tempdir().unwrap();
+    let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../corpus/surfaces");
+    for (name, quads) in [("cubespikes.obj", 1192), ("bamboo_pen.obj", 1160)] {
+        let path = corpus.join(name);
+        let path = path.to_str().unwrap();
+        let (code, out, err) = hexfill(dir.path(), &["fill", path, "-o", "m.vtu", "--no-embed", "--json"]);
+        assert_eq!(code, 0, "{err}");
+        let hexes = json(&out)["meshes"][0]["hexes"].as_u64().unwrap();
+        assert!(hexes <= 46 * quads, "{name}: {hexes} hexes");
+        assert!(passed(&judged(dir.path(), "m.vtu", path), 3), "{name}");
+    }
+}

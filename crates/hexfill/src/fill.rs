@@ -28,6 +28,19 @@ pub enum Strategy {
     Construct,
 }
 
+/// Where the tetrahedra of an interior that is not a ball come from.
+#[derive(Clone, Debug, Default)]
+#[non_exhaustive]
+pub enum InteriorFrom {
+    /// Handlebodies cut along disks, which positions tell.
+    #[default]
+    BuiltIn,
+    /// A tetrahedral mesh of the inside of the surface.
+    Tets(Arc<hexfill_construct::GivenTets>),
+    /// An installed program called as a process.
+    Tetgen(hexfill_construct::TetgenTets),
+}
+
 /// What to look for and where.
 #[derive(Clone, Debug)]
 pub struct FillOptions {
@@ -47,6 +60,8 @@ pub struct FillOptions {
     pub growth: GrowOptions,
     /// How long inward flips may take before the next strategy has its turn.
     pub inward_limit: Duration,
+    /// Where the construction gets the tetrahedra of an interior that is not a ball.
+    pub interior: InteriorFrom,
 }
 
 impl Default for FillOptions {
@@ -60,6 +75,7 @@ impl Default for FillOptions {
             growth_log: None,
             growth: GrowOptions::default(),
             inward_limit: Duration::from_secs(10),
+            interior: InteriorFrom::BuiltIn,
         }
     }
 }
@@ -287,12 +303,13 @@ fn construct(
     ctx: &Context<'_>,
     result: &mut FillResult,
 ) -> Result<(), FillError> {
-    let made = hexfill_construct::construct(
-        &problem.surface,
-        problem.points.as_deref(),
-        &hexfill_construct::Options::default(),
-        ctx,
-    )?;
+    let tets: Option<Box<dyn hexfill_construct::InteriorTets>> = match &options.interior {
+        InteriorFrom::BuiltIn => None,
+        InteriorFrom::Tets(tets) => Some(Box::new(hexfill_construct::GivenTets::clone(tets))),
+        InteriorFrom::Tetgen(program) => Some(Box::new(program.clone())),
+    };
+    let how = hexfill_construct::Options { tets, ..hexfill_construct::Options::default() };
+    let made = hexfill_construct::construct(&problem.surface, problem.points.as_deref(), &how, ctx)?;
     result.tried.push(made.report.to_string());
     if made.mesh.n_hexes() as u64 <= u64::from(options.max_hexes) {
         accept(&problem.surface, made.mesh, Route::Construction, made.start, options, result)?;

@@ -18,7 +18,8 @@ mod geometry;
 mod problem;
 
 pub use fill::{
-    FillError, FillOptions, FillReport, FillResult, Filled, Route, Strategy, check_fillable, fill, mesh_data,
+    FillError, FillOptions, FillReport, FillResult, Filled, InteriorFrom, Route, Strategy, check_fillable, fill,
+    mesh_data,
 };
 pub use geometry::{GeometryReport, Placed, boundary_points, place};
 pub use hexfill_mesh::{Context, Progress, StopReason};

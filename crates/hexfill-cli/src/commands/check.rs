@@ -3,10 +3,11 @@
 use crate::console::Console;
 use crate::exit::Exit;
 use crate::files;
-use anyhow::bail;
+use anyhow::{Context as _, bail};
 use hexfill::Context;
-use hexfill::check::{Judged, Options, judge};
+use hexfill::check::{Judged, Options, Rules, cell_quality, certificate_of, judge, verify_certificate, write_cell_csv};
 use hexfill::io::Format;
+use std::io::Write;
 
 /// Flags of `check`.
 #[derive(clap::Args)]
@@ -16,9 +17,32 @@ pub struct CheckArgs {
     /// The surface it must fill; without it the mesh is judged against its own boundary.
     #[arg(long, value_name = "FILE")]
     surface: Option<String>,
+    /// Which definition of a legal complex to judge by.
+    #[arg(long, value_enum, default_value = "strict")]
+    rules: RulesArg,
+    /// Also test that the boundary does not touch or cross itself, so that the mesh does not overlap.
+    #[arg(long)]
+    overlap: bool,
+    /// Write a certificate (JSON) that every level holds; refused if one does not.
+    #[arg(long, value_name = "OUT", requires = "surface")]
+    certificate: Option<String>,
+    /// Verify a certificate of this mesh (and surface) by judging anew.
+    #[arg(long, value_name = "FILE", conflicts_with = "certificate")]
+    verify_certificate: Option<String>,
+    /// Write the quality of every cell as CSV.
+    #[arg(long, value_name = "OUT")]
+    csv: Option<String>,
     /// Format of the mesh.
     #[arg(long, value_name = "FORMAT", value_parser = files::parse_format)]
     from: Option<Format>,
+}
+
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum RulesArg {
+    /// Proper intersection.
+    Strict,
+    /// The rules of the published enumeration, in the order of the hexes.
+    Weill,
 }
 
 /// Judges and reports; exit code 1 if a rule is broken.
@@ -41,7 +65,38 @@ pub fn run(args: &CheckArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Re
         surface_points: problem.as_ref().and_then(|p| p.points.as_deref()),
         ..Judged::connectivity(n_vertices, &data.hexes)
     };
-    let report = judge(&judged, &Options::default(), ctx);
+    if let Some(file) = &args.verify_certificate {
+        let text = std::fs::read_to_string(file).with_context(|| file.clone())?;
+        return match verify_certificate(&text, &judged, ctx) {
+            Ok(certificate) => {
+                let [lower, upper] = certificate.scaled_jacobian;
+                console.print(format!(
+                    "{file}: holds: {} hexes with det J > 0, scaled Jacobian {lower:.9} .. {upper:.9}",
+                    certificate.hexes
+                ))?;
+                Ok(Exit::Done)
+            }
+            Err(error) => {
+                console.error(&anyhow::Error::new(error).context(format!("{file} does not hold")));
+                Ok(Exit::No)
+            }
+        };
+    }
+    let rules = match args.rules {
+        RulesArg::Strict => Rules::Strict,
+        RulesArg::Weill => Rules::Weill,
+    };
+    let report = judge(&judged, &Options::default().rules(rules).overlap(args.overlap), ctx);
+    if let Some(path) = &args.csv {
+        let cells = cell_quality(&judged);
+        files::write_file(path, |out| write_cell_csv(&cells, &mut std::io::BufWriter::new(out)))?;
+    }
+    if let Some(path) = &args.certificate {
+        match certificate_of(&judged, &report) {
+            Ok(certificate) => files::write_file(path, |out| out.write_all(certificate.to_json().as_bytes()))?,
+            Err(error) => console.error(&anyhow::Error::new(error).context("no certificate written")),
+        }
+    }
     if console.json {
         console.print(report.to_json())?;
     } else {

@@ -5,9 +5,12 @@ use crate::console::Console;
 use crate::exit::Exit;
 use crate::files;
 use anyhow::bail;
+use hexfill::construct::{GivenTets, TetgenTets};
 use hexfill::io::Format;
 use hexfill::search::{Atlas, GrowOptions};
-use hexfill::{Context, FillOptions, FillReport, Filled, GeometryReport, Placed, Problem, StopReason, Strategy};
+use hexfill::{
+    Context, FillOptions, FillReport, Filled, GeometryReport, InteriorFrom, Placed, Problem, StopReason, Strategy,
+};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -58,6 +61,12 @@ pub struct FillArgs {
     /// How long inward flips may take before the next strategy has its turn.
     #[arg(long, default_value = "10s", value_name = "TIME", value_parser = files::parse_duration)]
     inward_limit: Duration,
+    /// A tetrahedral mesh of the inside, for surfaces that are not spheres (boundary: the quads cut along diagonals).
+    #[arg(long, value_name = "FILE", conflicts_with = "tetgen")]
+    tets: Option<String>,
+    /// Call this TetGen program for the inside of surfaces that are not spheres.
+    #[arg(long, value_name = "PROGRAM", num_args = 0..=1, default_missing_value = "tetgen")]
+    tetgen: Option<PathBuf>,
     /// Do not embed: interior vertices get start positions, and geometry is not judged.
     #[arg(long)]
     no_embed: bool,
@@ -125,6 +134,7 @@ pub fn run(args: &FillArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Res
         atlas: args.atlas.as_deref().map(Atlas::read_path).transpose()?.map(Arc::new),
         growth_log: args.growth_log.clone().or_else(|| own_log.clone()),
         inward_limit: args.inward_limit,
+        interior: interior(args)?,
         growth: GrowOptions { cap: args.cap, width: args.width.max(1) },
         ..FillOptions::default()
     };
@@ -184,6 +194,23 @@ pub fn run(args: &FillArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Res
         say(&output, args, console);
     }
     Ok(Exit::of_stop(result.stop, if all_valid { Exit::Done } else { Exit::No }))
+}
+
+/// Where the tetrahedra of an interior that is not a ball come from.
+fn interior(args: &FillArgs) -> anyhow::Result<InteriorFrom> {
+    if let Some(file) = &args.tets {
+        let data = files::read_data(file, None)?;
+        if data.tets.is_empty() {
+            bail!("{file} has no tetrahedra");
+        }
+        let n_vertices = data.points.len();
+        let points = data.has_coordinates.then_some(data.points);
+        return Ok(InteriorFrom::Tets(Arc::new(GivenTets { n_vertices, tets: data.tets, points })));
+    }
+    Ok(match &args.tetgen {
+        Some(program) => InteriorFrom::Tetgen(TetgenTets { program: program.clone() }),
+        None => InteriorFrom::BuiltIn,
+    })
 }
 
 /// Embeds a mesh, or gives it start positions.

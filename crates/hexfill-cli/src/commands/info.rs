@@ -3,6 +3,7 @@
 use crate::console::Console;
 use crate::exit::Exit;
 use crate::files;
+use hexfill::construct::{Existence, existence};
 use hexfill::io::{Format, MeshData};
 use hexfill::mesh::{
     HexMesh, QuadSurface, bipartition, chords, hex_signature, key, sheets, surface_automorphisms, surface_signature,
@@ -32,8 +33,11 @@ struct SurfaceInfo {
     euler: i64,
     bipartite: bool,
     odd_cycle: Option<Vec<u32>>,
-    fillable: bool,
-    why_not: Option<String>,
+    /// "exists", "none" or "unknown".
+    hex_mesh: &'static str,
+    because: String,
+    /// The odd cycle that bounds inside, if that is why there is none.
+    bounding_cycle: Option<Vec<[u32; 2]>>,
     degrees: BTreeMap<u32, usize>,
     chords: Vec<ChordInfo>,
     key: String,
@@ -83,7 +87,7 @@ pub fn run(args: &InfoArgs, console: &Console) -> anyhow::Result<Exit> {
     for note in &problem.notes {
         console.note(note);
     }
-    let info = describe(&problem.surface);
+    let info = describe(&problem.surface, problem.points.as_deref());
     if console.json {
         console.print_json(&info)?;
     } else {
@@ -92,10 +96,29 @@ pub fn run(args: &InfoArgs, console: &Console) -> anyhow::Result<Exit> {
     Ok(Exit::Done)
 }
 
-fn describe(surface: &QuadSurface) -> SurfaceInfo {
+/// Whether a hex mesh exists, why, and the cycle that forbids it.
+fn verdict(surface: &QuadSurface, points: Option<&[[f64; 3]]>) -> (&'static str, String, Option<Vec<[u32; 2]>>) {
+    if let Err(refusal) = check_fillable(surface) {
+        return ("none", refusal.to_string(), None);
+    }
+    match existence(surface, points) {
+        Existence::Exists { because } => ("exists", because.to_owned(), None),
+        Existence::OddCycleBounds { cycle } => {
+            let edges: Vec<[u32; 2]> = cycle.iter().map(|e| [e.0.0, e.1.0]).collect();
+            let shown: Vec<String> = cycle.iter().take(20).map(ToString::to_string).collect();
+            let more = if cycle.len() > 20 { " ..." } else { "" };
+            let because = format!("an odd cycle of {} edges bounds inside: {}{more}", cycle.len(), shown.join(" "));
+            ("none", because, Some(edges))
+        }
+        Existence::Unknown { reason } => ("unknown", reason, None),
+        other => ("none", format!("{other:?}"), None),
+    }
+}
+
+fn describe(surface: &QuadSurface, points: Option<&[[f64; 3]]>) -> SurfaceInfo {
     let small = surface.n_quads() <= SIGNATURE_LIMIT;
     let parts = bipartition(surface);
-    let refusal = check_fillable(surface).err().map(|e| e.to_string());
+    let (hex_mesh, because, bounding_cycle) = verdict(surface, points);
     let mut degrees = BTreeMap::new();
     for v in 0..surface.n_vertices() {
         *degrees.entry(surface.degree(hexfill::mesh::VertexId::new(v))).or_insert(0) += 1;
@@ -111,8 +134,9 @@ fn describe(surface: &QuadSurface) -> SurfaceInfo {
         euler: surface.euler_characteristic(),
         bipartite: parts.is_ok(),
         odd_cycle: parts.err().map(|c| c.vertices.iter().map(|v| v.0).collect()),
-        fillable: refusal.is_none(),
-        why_not: refusal,
+        hex_mesh,
+        because,
+        bounding_cycle,
         degrees,
         chords: chords
             .iter()
@@ -163,13 +187,10 @@ fn print_surface(info: &SurfaceInfo, console: &Console) -> anyhow::Result<()> {
     if let Some(signature) = info.signature.as_ref().filter(|s| s.len() <= 2000) {
         console.print(format!("signature: {signature}"))?;
     }
-    console.print(match &info.why_not {
-        Some(why) => format!("hex mesh: {why}"),
-        None if info.genus == 0 && info.components == 1 => {
-            "hex mesh: exists (an even, 3-connected quad sphere)".to_owned()
-        }
-        None if info.bipartite => "hex mesh: exists (even and bipartite, so no odd cycle bounds)".to_owned(),
-        None => "hex mesh: exists unless an odd cycle bounds a surface inside, which depends on the solid".to_owned(),
+    console.print(match info.hex_mesh {
+        "exists" => format!("hex mesh: exists ({})", info.because),
+        "none" => format!("hex mesh: none exists: {}", info.because),
+        _ => format!("hex mesh: not known: {}", info.because),
     })
 }
 
@@ -193,7 +214,7 @@ fn mesh_info(data: &MeshData, console: &Console) -> anyhow::Result<Exit> {
             })
             .collect(),
         signature: (mesh.n_hexes() <= SIGNATURE_LIMIT).then(|| hex_signature(&mesh).ok()).flatten(),
-        boundary: boundary.as_ref().map(describe),
+        boundary: boundary.as_ref().map(|b| describe(b, data.has_coordinates.then_some(data.points.as_slice()))),
     };
     if console.json {
         console.print_json(&info)?;
