@@ -240,8 +240,7 @@ impl Packing {
             // Once round, counter-clockwise: each kite leads from one touching point to the next.
             loop {
                 // The kite after the touching point of d: for a vertex that of dart d, for a quad that of the next dart.
-                let (kite, next) =
-                    if is_vertex(circle) { (d, surface.twin(d.prev())) } else { (d.next(), d.next()) };
+                let (kite, next) = if is_vertex(circle) { (d, surface.twin(d.prev())) } else { (d.next(), d.next()) };
                 let (v, q) = circles_of(kite);
                 let other = if is_vertex(circle) { q } else { v };
                 let half = if self.is_line[other] {
@@ -384,9 +383,7 @@ mod tests {
         surface.quads().iter().all(|quad| {
             let p = quad.map(|v| points[v.index()]);
             let normal = unit(cross(sub(p[2], p[0]), sub(p[3], p[1]))).unwrap();
-            (0..points.len()).all(|v| {
-                quad.iter().any(|w| w.index() == v) || dot(normal, sub(points[v], p[0])) < -1e-9
-            })
+            (0..points.len()).all(|v| quad.iter().any(|w| w.index() == v) || dot(normal, sub(points[v], p[0])) < -1e-9)
         })
     }
 

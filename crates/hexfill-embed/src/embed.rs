@@ -277,9 +277,7 @@ impl Search<'_> {
         }
         let starts = found.len() as u32;
         let valid_starts = found.iter().filter(|c| c.n_bad == 0).count() as u32;
-        found.sort_by(|a, b| {
-            a.n_bad.cmp(&b.n_bad).then(b.value.total_cmp(&a.value)).then(a.number.cmp(&b.number))
-        });
+        found.sort_by(|a, b| a.n_bad.cmp(&b.n_bad).then(b.value.total_cmp(&a.value)).then(a.number.cmp(&b.number)));
         if self.options.objective == Objective::Balanced && found[0].n_bad == 0 && stop == StopReason::Finished {
             stop = self.balance(&mut found, context);
         }
@@ -323,7 +321,10 @@ impl Search<'_> {
                 stopped = climbed.stopped;
                 value = climbed.scaled_jacobian;
             } else {
-                stopped = local::climb_worst(problem, &mut points, target, self.options.programs, context);
+                // A round judges every cell; very large meshes get fewer.
+                let share = if n_hexes > self.options.local_limit { 8 } else { 1 };
+                let rounds = self.options.programs / share;
+                stopped = local::climb_worst(problem, &mut points, target, rounds, context);
             }
             bad = bad_cells(problem, &points);
         }

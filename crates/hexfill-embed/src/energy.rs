@@ -57,7 +57,9 @@ impl<'p> Energy<'p> {
         let problem = self.problem;
         let mut sizes = std::mem::take(&mut self.sizes);
         // The signed volumes add up to the volume inside the boundary, however tangled the cells are.
-        problem.map_hexes(&mut sizes, |h| Frame::new(&problem.corners_of(h, points)).bernstein().iter().sum::<f64>() / 27.0);
+        problem.map_hexes(&mut sizes, |h| {
+            Frame::new(&problem.corners_of(h, points)).bernstein().iter().sum::<f64>() / 27.0
+        });
         let volume: f64 = sizes.iter().sum();
         let share = (volume.abs() / problem.hexes.len() as f64).cbrt().max(1e-12);
         if self.volume_weight > 0.0 {
@@ -167,8 +169,7 @@ mod tests {
     fn gradient_matches_differences() {
         let mut random = Random::new(5, 0);
         for terms in [CORNERS, u64::MAX, CORNERS | 1 << 17] {
-            let p: [Vector; 8] =
-                hexfill_mesh::cube::POSITIONS.map(|p| p.map(|x| f64::from(x) + 0.8 * random.signed()));
+            let p: [Vector; 8] = hexfill_mesh::cube::POSITIONS.map(|p| p.map(|x| f64::from(x) + 0.8 * random.signed()));
             let (_, g) = hex_energy(&p, terms, 0.7, 0.5, 0.3);
             for corner in 0..8 {
                 for k in 0..3 {

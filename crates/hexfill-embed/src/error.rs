@@ -72,7 +72,9 @@ pub enum EmbedError {
         b: VertexId,
     },
     /// The circle packing did not converge.
-    #[error("the circle packing stopped at angle error {given:e}, above {limit:e}: the surface is too large or too uneven for double precision")]
+    #[error(
+        "the circle packing stopped at angle error {given:e}, above {limit:e}: the surface is too large or too uneven for double precision"
+    )]
     NotConverged {
         /// The error reached.
         given: f64,

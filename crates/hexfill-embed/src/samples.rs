@@ -9,9 +9,9 @@ pub(crate) fn grid(n: usize) -> HexMesh {
     for k in 0..n {
         for j in 0..n {
             for i in 0..n {
-                hexes.push(hexfill_mesh::cube::POSITIONS.map(|p| {
-                    at(i + p[0] as usize, j + p[1] as usize, k + p[2] as usize)
-                }));
+                hexes.push(
+                    hexfill_mesh::cube::POSITIONS.map(|p| at(i + p[0] as usize, j + p[1] as usize, k + p[2] as usize)),
+                );
             }
         }
     }

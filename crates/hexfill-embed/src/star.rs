@@ -115,9 +115,8 @@ mod tests {
     fn closed_form_beats_and_meets_a_dense_sampling() {
         let mut random = Random::new(21, 0);
         for case in 0..30 {
-            let normals: Vec<Vector> = (0..1 + case % 6)
-                .map(|_| [random.signed(), random.signed(), 0.3 + random.unit()])
-                .collect();
+            let normals: Vec<Vector> =
+                (0..1 + case % 6).map(|_| [random.signed(), random.signed(), 0.3 + random.unit()]).collect();
             let exact = best_direction(&normals);
             let mut sampled = -1.0f64;
             for _ in 0..20000 {

@@ -30,10 +30,7 @@ fn positions_must_be_there_and_finite() {
         assert!(embed(&mesh, &inner, None, &Options::default(), &Context::default()).is_ok());
         assert!(matches!(refused(&mesh, &points, Some(&inner)), EmbedError::NotFinite { .. }));
     }
-    assert!(matches!(
-        refused(&mesh, &points, Some(&points[1..])),
-        EmbedError::StartLength { given: 26, limit: 27 }
-    ));
+    assert!(matches!(refused(&mesh, &points, Some(&points[1..])), EmbedError::StartLength { given: 26, limit: 27 }));
 }
 
 #[test]

@@ -25,6 +25,34 @@ fn refinement_cubes_reach_their_star_bound() {
 }
 
 #[test]
+fn the_pyramid_with_36_hexes_reaches_its_optimum() {
+    let sample = Sample::read("pyramid_36");
+    let mesh = sample.mesh();
+    let optimum = 0.1f64.sqrt();
+    let done = embed(&mesh, &sample.boundary_points, None, &Options::default(), &Context::default()).unwrap();
+    let (valid, [lower, _]) = certified(&mesh, &done.points);
+    assert!(valid && lower >= 0.3162277, "{lower}");
+    assert!((done.report.upper_bound - optimum).abs() < 1e-12, "{}", done.report.upper_bound);
+    assert_boundary_kept(&mesh, &sample.boundary_points, &done.points);
+    let options = Options::new(Objective::Balanced);
+    let done = embed(&mesh, &sample.boundary_points, None, &options, &Context::default()).unwrap();
+    let (valid, [lower, _]) = certified(&mesh, &done.points);
+    assert!(valid && lower >= 0.30 && done.report.condition <= 51.0, "{lower} {}", done.report.condition);
+}
+
+#[test]
+fn the_spindle_with_40_hexes_has_coordinates() {
+    let sample = Sample::read("spindle_40");
+    let mesh = sample.mesh();
+    let mut options = Options::default();
+    options.starts = 1;
+    let done = embed(&mesh, &sample.boundary_points, None, &options, &Context::default()).unwrap();
+    let (valid, [lower, _]) = certified(&mesh, &done.points);
+    assert!(valid && lower >= 0.239, "{lower}");
+    assert!(done.report.upper_bound > 0.30 && done.report.upper_bound < 0.31);
+}
+
+#[test]
 fn balanced_keeps_most_of_the_optimum_and_lowers_the_condition() {
     let sample = Sample::read("refine_9to1_13");
     let mesh = sample.mesh();
