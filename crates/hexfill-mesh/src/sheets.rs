@@ -43,9 +43,19 @@ impl Sheet {
 /// The sheets of a mesh, ordered by their first crossing. Time as a sort of 12 edges a hex.
 pub fn sheets(mesh: &HexMesh) -> Vec<Sheet> {
     let edges = mesh.edges();
+    // The edges are sorted, so those of one smaller vertex are together: a short search where all of them would be a long one.
+    let mut begin = vec![0u32; mesh.n_vertices() + 1];
+    for [a, _] in &edges {
+        begin[a.index() + 1] += 1;
+    }
+    for v in 0..mesh.n_vertices() {
+        begin[v + 1] += begin[v];
+    }
     let id = |a: VertexId, b: VertexId| {
-        let i = edges.binary_search(&[a.min(b), a.max(b)]).expect("edges() lists the edges of every hex");
-        i as u32
+        let (a, b) = (a.min(b), a.max(b));
+        let first = begin[a.index()] as usize;
+        let i = edges[first..begin[a.index() + 1] as usize].binary_search_by_key(&b, |e| e[1]);
+        (first + i.expect("edges() lists the edges of every hex")) as u32
     };
     let mut parent: Vec<u32> = (0..edges.len() as u32).collect();
     for hex in mesh.hexes() {

@@ -120,6 +120,16 @@ fn every_small_sphere() {
     }
 }
 
+/// The published counts of 3-connected quad spheres to 20 quads (22 vertices). About half a minute: only with HEXFILL_SLOW=1.
+#[test]
+fn counts_to_twenty_quads() {
+    if std::env::var_os("HEXFILL_SLOW").is_none() {
+        return;
+    }
+    let counts: Vec<usize> = all_spheres_up_to(20).iter().map(Vec::len).collect();
+    assert_eq!(counts[6..], [1, 0, 1, 1, 3, 3, 11, 18, 58, 139, 451, 1326, 4461, 14554, 49957]);
+}
+
 #[test]
 fn groups_of_known_surfaces() {
     for (s, order) in [

@@ -251,18 +251,31 @@ impl Sphere {
         }
         let (p, [_, _, e, f]) = self.quad_from(a, d);
         let (q, [_, _, b, c]) = self.quad_from(d, a);
-        let (new_pairs, quads) = if clockwise {
-            ([(b, e), (b, f), (c, e)], [[a, b, e, f], [b, c, d, e]])
-        } else {
-            ([(c, f), (c, e), (b, f)], [[c, d, e, f], [a, b, c, f]])
-        };
-        if new_pairs.iter().any(|&(x, y)| self.pairs.contains(&pair(x, y))) {
+        let ((x, y), quads) =
+            if clockwise { ((b, e), [[a, b, e, f], [b, c, d, e]]) } else { ((c, f), [[c, d, e, f], [a, b, c, f]]) };
+        // Either way b-f and c-e become diagonals; of the four old ones two stay.
+        if [(x, y), (b, f), (c, e)].iter().any(|&(s, t)| self.pairs.contains(&pair(s, t))) {
             return false;
         }
-        self.take(p);
-        self.take(q);
-        self.set(p, quads[0]);
-        self.set(q, quads[1]);
+        let gone = if clockwise { [(a, c), (d, f)] } else { [(a, e), (b, d)] };
+        for (s, t) in gone.into_iter().chain([(a, d)]) {
+            self.pairs.remove(&pair(s, t));
+        }
+        for (s, t) in [(x, y), (b, f), (c, e)] {
+            self.pairs.insert(pair(s, t));
+        }
+        for (v, w) in [(a, x), (d, y)] {
+            self.degree[v as usize] -= 1;
+            self.degree[w as usize] += 1;
+        }
+        self.left.remove(&(a, d));
+        self.left.remove(&(d, a));
+        for (slot, quad) in [p, q].into_iter().zip(quads) {
+            self.quads[slot] = quad;
+            for i in 0..4 {
+                self.left.insert((quad[i], quad[(i + 1) % 4]), slot as u32);
+            }
+        }
         true
     }
 }
@@ -297,6 +310,29 @@ mod tests {
         let classes: std::collections::BTreeSet<String> =
             (0..3000).map(|seed| surface_signature(&random_sphere(14, seed).unwrap())).collect();
         assert_eq!(classes.len(), 58);
+    }
+
+    #[test]
+    fn the_tables_stay_those_of_the_quads() {
+        let mut random = Random::new(9);
+        let mut sphere = Sphere::of(&pseudo_double_wheel(4).unwrap());
+        for step in 0..3000 {
+            match random.below(if sphere.quads.len() < 60 { 40 } else { 30 }) {
+                0..30 => sphere.slide_somewhere(&mut random),
+                30..39 => sphere.split_somewhere(&mut random),
+                _ => {
+                    sphere.insert_ring(random.below(sphere.quads.len()));
+                    true
+                }
+            };
+            if step % 50 == 0 {
+                let again = Sphere::of(&sphere.surface());
+                assert_eq!((&again.left, &again.pairs), (&sphere.left, &sphere.pairs));
+                assert_eq!((&again.quads, &again.degree), (&sphere.quads, &sphere.degree));
+                assert_eq!(again.pairs.len(), 4 * again.quads.len(), "2 edges and 2 diagonals a quad, all different");
+            }
+        }
+        assert!(sphere.quads.len() >= 60);
     }
 
     /// Slides can be undone, so between any two classes A, B of one size: (slides A to B) / |Aut A| = (slides B to A) / |Aut B|. This ties the
