@@ -5,6 +5,7 @@
 
 use crate::error::{Place, Position, ReadError, snippet};
 use crate::format::Format;
+use std::fmt::Display;
 use std::io::{self, BufRead, Read};
 
 /// Most items (or bytes) that are reserved on the word of a file.
@@ -243,6 +244,22 @@ impl<'r> Source<'r> {
         })
     }
 
+    /// As [`need_word`](Self::need_word), for inner loops: the message is made only if it is needed.
+    pub(crate) fn need_word_or(&mut self, what: impl FnOnce() -> String) -> Result<Span, ReadError> {
+        match self.word() {
+            Some(span) => Ok(span),
+            None => self.need_word(&what()),
+        }
+    }
+
+    /// As [`need_word_anywhere`](Self::need_word_anywhere), for inner loops.
+    pub(crate) fn need_word_anywhere_or(&mut self, what: impl FnOnce() -> String) -> Result<Span, ReadError> {
+        match self.word_anywhere()? {
+            Some(span) => Ok(span),
+            None => Err(self.truncated(what())),
+        }
+    }
+
     /// A word on this line or a later one, or [`ReadError::Truncated`].
     pub(crate) fn need_word_anywhere(&mut self, what: &str) -> Result<Span, ReadError> {
         match self.word_anywhere()? {
@@ -260,7 +277,13 @@ impl<'r> Source<'r> {
 
     /// A count: a whole number that is not negative and within the limit of 32-bit ids.
     pub(crate) fn count(&self, span: Span, what: &str) -> Result<u64, ReadError> {
-        let given = self.integer(span, &format!("the number of {what}"))?;
+        let Some(given) = parse_integer(self.text(span)) else {
+            return Err(self.malformed(
+                format!("the number of {what}"),
+                span,
+                "correct this word, or the counts before it",
+            ));
+        };
         let Ok(given) = u64::try_from(given) else {
             return Err(self.malformed(format!("the number of {what}"), span, "a count is not negative"));
         };
@@ -304,7 +327,7 @@ impl<'r> Source<'r> {
     pub(crate) fn point_on_line(&mut self) -> Result<[f64; 3], ReadError> {
         let mut point = [0.0; 3];
         for (slot, axis) in point.iter_mut().zip(["x", "y", "z"]) {
-            let span = self.need_word(&format!("coordinate {axis}"))?;
+            let span = self.need_word_or(|| format!("coordinate {axis}"))?;
             *slot = self.coordinate(span, axis)?;
         }
         Ok(point)
@@ -312,7 +335,10 @@ impl<'r> Source<'r> {
 
     /// An index counted from `lowest` among `count` things called `what`, made 0-based.
     pub(crate) fn index(&self, span: Span, lowest: i64, count: usize, what: &str) -> Result<u32, ReadError> {
-        let given = self.integer(span, &format!("a {what} index"))?;
+        let Some(given) = parse_integer(self.text(span)) else {
+            let expected = format!("a {what} index (a whole number)");
+            return Err(self.malformed(expected, span, "correct this word, or the counts before it"));
+        };
         self.checked_index(given, lowest, count, what)
     }
 
@@ -338,14 +364,14 @@ impl<'r> Source<'r> {
         }
     }
 
-    /// Fills a small array from the bytes after the current line; false if the file ends exactly there.
-    pub(crate) fn exact(&mut self, buffer: &mut [u8], what: &str) -> Result<(), ReadError> {
+    /// Fills a small array from the bytes after the current line.
+    pub(crate) fn exact(&mut self, buffer: &mut [u8], what: impl Display) -> Result<(), ReadError> {
         match self.reader.read_exact(buffer) {
             Ok(()) => {
                 self.consumed += buffer.len() as u64;
                 Ok(())
             }
-            Err(e) if e.kind() == io::ErrorKind::UnexpectedEof => Err(self.truncated(what)),
+            Err(e) if e.kind() == io::ErrorKind::UnexpectedEof => Err(self.truncated(what.to_string())),
             Err(e) => Err(self.io_error(e)),
         }
     }

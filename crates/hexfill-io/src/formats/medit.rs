@@ -79,13 +79,13 @@ pub(crate) fn read(source: Source<'_>) -> Result<MeshData, ReadError> {
             let span = s.need_word_anywhere(&format!("the number of {keyword}"))?;
             let n = s.count(span, &keyword)?;
             for i in 0..n {
-                let missing = format!("{n} {keyword}, found {i}");
+                let missing = || format!("{n} {keyword}, found {i}");
                 nodes.clear();
                 for _ in 0..*n_nodes {
-                    let span = s.need_word_anywhere(&missing)?;
+                    let span = s.need_word_anywhere_or(missing)?;
                     nodes.push(s.index(span, 1, out.mesh.points.len(), "vertex")?);
                 }
-                let span = s.need_word_anywhere(&missing)?;
+                let span = s.need_word_anywhere_or(missing)?;
                 let tag = s.integer(span, "a reference number")?;
                 match (keyword.as_str(), <[u32; 8]>::try_from(nodes.as_slice())) {
                     (_, Ok(hex)) => {
@@ -120,14 +120,14 @@ fn read_points(s: &mut Source<'_>, flat: bool, out: &mut Assembly) -> Result<(),
     out.mesh.points.reserve(reserve(n));
     out.point_tags.reserve(reserve(n));
     for i in 0..n {
-        let missing = format!("{n} points, found {i}");
+        let missing = || format!("{n} points, found {i}");
         let mut point = [0.0; 3];
         for (slot, axis) in point.iter_mut().zip(["x", "y", "z"]).take(if flat { 2 } else { 3 }) {
-            let span = s.need_word_anywhere(&missing)?;
+            let span = s.need_word_anywhere_or(missing)?;
             *slot = s.coordinate(span, axis)?;
         }
         out.mesh.points.push(point);
-        let span = s.need_word_anywhere(&missing)?;
+        let span = s.need_word_anywhere_or(missing)?;
         out.point_tags.push(s.integer(span, "a reference number")?);
     }
     Ok(())

@@ -62,7 +62,7 @@ pub(crate) fn read(source: Source<'_>) -> Result<MeshData, ReadError> {
         }
         face.clear();
         for k in 0..sides {
-            let span = s.need_word(&format!("{sides} vertex indices, found {k}"))?;
+            let span = s.need_word_or(|| format!("{sides} vertex indices, found {k}"))?;
             face.push(s.index(span, 0, out.mesh.points.len(), "vertex")?);
         }
         out.face(&face, 0);

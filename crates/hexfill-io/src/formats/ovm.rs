@@ -75,7 +75,7 @@ pub(crate) fn read(source: Source<'_>) -> Result<MeshData, ReadError> {
         let sides = s.count(span, "faces")?;
         let mut cell = Vec::new();
         for _ in 0..sides {
-            let span = s.need_word(&format!("{sides} half-faces"))?;
+            let span = s.need_word_or(|| format!("{sides} half-faces"))?;
             let half_face = s.index(span, 0, 2 * faces.len(), "half-face")?;
             let users = &mut cells_of_face[half_face as usize / 2];
             *users = (users.0.saturating_add(1), half_face);
@@ -135,7 +135,7 @@ fn read_face(s: &mut Source<'_>, edges: &[[u32; 2]]) -> Result<Vec<u32>, ReadErr
     let mut first = 0;
     let mut at = 0;
     for k in 0..sides {
-        let span = s.need_word(&format!("{sides} half-edges"))?;
+        let span = s.need_word_or(|| format!("{sides} half-edges"))?;
         let half_edge = s.index(span, 0, 2 * edges.len(), "half-edge")? as usize;
         let [mut from, mut to] = edges[half_edge / 2];
         if half_edge % 2 == 1 {

@@ -212,12 +212,12 @@ fn start_element(s: &mut Source<'_>, encoding: Encoding, element: &Element, i: u
 /// A value: whole numbers up to 2^32 are exact in both.
 fn read_scalar(s: &mut Source<'_>, encoding: Encoding, scalar: Scalar, name: &str) -> Result<f64, ReadError> {
     if encoding == Encoding::Ascii {
-        let span = s.need_word(&format!("a value for `{name}`"))?;
+        let span = s.need_word_or(|| format!("a value for `{name}`"))?;
         return if scalar.is_whole() { Ok(s.integer(span, name)? as f64) } else { s.number(span, name) };
     }
     let mut bytes = [0; 8];
     let size = scalar.size();
-    s.exact(&mut bytes[..size], &format!("more `{name}` values"))?;
+    s.exact(&mut bytes[..size], format_args!("a value for `{name}`"))?;
     if encoding == Encoding::Big {
         bytes[..size].reverse();
     }

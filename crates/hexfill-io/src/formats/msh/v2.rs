@@ -6,6 +6,7 @@ use crate::error::ReadError;
 use crate::source::reserve;
 use crate::write::{write_indices, write_point};
 use std::collections::BTreeMap;
+use std::fmt::Display;
 use std::io::{self, Write};
 
 pub(crate) fn sections(r: &mut Reader<'_>) -> Result<(), ReadError> {
@@ -26,7 +27,7 @@ pub(crate) fn sections(r: &mut Reader<'_>) -> Result<(), ReadError> {
     Ok(())
 }
 
-fn int(r: &mut Reader<'_>, reversed: bool, what: &str) -> Result<i64, ReadError> {
+fn int(r: &mut Reader<'_>, reversed: bool, what: impl Display) -> Result<i64, ReadError> {
     let mut bytes = [0; 4];
     r.s.exact(&mut bytes, what)?;
     Ok(i64::from(if reversed { i32::from_be_bytes(bytes) } else { i32::from_le_bytes(bytes) }))
@@ -39,12 +40,12 @@ fn read_nodes(r: &mut Reader<'_>) -> Result<(), ReadError> {
     r.s.set_binary(r.binary.is_some());
     for i in 0..n {
         if let Some(reversed) = r.binary {
-            let missing = format!("{n} nodes, found {i}");
-            let number = int(r, reversed, &missing)?;
+            let missing = format_args!("{n} nodes, found {i}");
+            let number = int(r, reversed, missing)?;
             let mut point = [0.0; 3];
             for (slot, axis) in point.iter_mut().zip(["x", "y", "z"]) {
                 let mut bytes = [0; 8];
-                r.s.exact(&mut bytes, &missing)?;
+                r.s.exact(&mut bytes, missing)?;
                 *slot = if reversed { f64::from_be_bytes(bytes) } else { f64::from_le_bytes(bytes) };
                 if !slot.is_finite() {
                     let (at, what) = (r.s.place(), format!("{axis} of node {number}"));

@@ -199,14 +199,14 @@ impl Reader<'_> {
         if scalar.is_whole() {
             let mut values = Vec::with_capacity(reserve(n));
             while (values.len() as u64) < n {
-                let span = self.s.need_word_anywhere(&missing(values.len()))?;
+                let span = self.s.need_word_anywhere_or(|| missing(values.len()))?;
                 values.push(self.s.integer(span, what)?);
             }
             Ok(Values::Whole(values))
         } else {
             let mut values = Vec::with_capacity(reserve(n));
             while (values.len() as u64) < n {
-                let span = self.s.need_word_anywhere(&missing(values.len()))?;
+                let span = self.s.need_word_anywhere_or(|| missing(values.len()))?;
                 values.push(self.s.number(span, what)?);
             }
             Ok(Values::Real(values))
@@ -276,7 +276,7 @@ impl Reader<'_> {
                     this.s.malformed_text(expected, format!("{i} of them"), "the header of the section is wrong")
                 });
             }
-            let span = this.s.need_word_anywhere(&format!("{n} {what}, found {i}"))?;
+            let span = this.s.need_word_anywhere_or(|| format!("{n} {what}, found {i}"))?;
             this.s.integer(span, what)
         };
         for i in 0..n {
