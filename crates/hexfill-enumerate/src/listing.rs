@@ -54,7 +54,7 @@ pub fn line(code: &Code, format: ListFormat, rule: Rule) -> Result<String, Enume
 /// Signatures are the oriented ones; a mirrored code is marked, since both have the same.
 ///
 /// # Errors
-/// As [`line`]; [`EnumerateError::Signature`] for an object that is not orientable.
+/// As [`line()`]; [`EnumerateError::Signature`] for an object that is not orientable.
 pub fn mirror_lines(code: &Code, format: ListFormat, rule: Rule) -> Result<Vec<String>, EnumerateError> {
     let c = mesh_of(code, rule)?;
     let mut out = Vec::new();
@@ -87,7 +87,7 @@ fn hexes_text(c: &Complex) -> String {
 /// The complex of a code, its cubes in an order the rule allows.
 ///
 /// # Errors
-/// As [`line`].
+/// As [`line()`].
 pub fn mesh_of(code: &Code, rule: Rule) -> Result<Complex, EnumerateError> {
     let c = code.decode()?;
     match rule {

@@ -33,7 +33,9 @@ fn atlas(c: &mut Criterion) {
     let surface = spindle();
     let (cavity, _) = Cavity::from_surface(&surface).expect("a small sphere");
     let ball = Atlas::embedded().balls_for(&cavity).next().expect("the spindle is in the atlas");
-    group.bench_function("legal flips of the spindle's outside", |b| b.iter(|| legal_flips(black_box(&ball.boundary), 24)));
+    group.bench_function("legal flips of the spindle's outside", |b| {
+        b.iter(|| legal_flips(black_box(&ball.boundary), 24))
+    });
     group.bench_function("fill the spindle from the embedded atlas", |b| {
         b.iter(|| fill_from_atlas(&surface, Atlas::embedded(), &FillOptions::default(), &Context::default()));
     });

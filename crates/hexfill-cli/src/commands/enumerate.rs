@@ -48,7 +48,7 @@ pub struct EnumerateArgs {
     /// List only balls.
     #[arg(long)]
     balls: bool,
-    /// List only meshes whose boundary has this key, such as "8x[8,16] 8x[16,16]".
+    /// List only meshes whose boundary has this key, such as `8x[8,16] 8x[16,16]`.
     #[arg(long, value_name = "KEY")]
     only_key: Option<String>,
     /// Report meshes whose boundary is this: pyramid, spindle, buffer-20, buffer-22, carbonera-10, `all` of these, a key or a
