@@ -95,7 +95,7 @@ fn part(frame: Frame, b: [f64; 27], error: f64, cell: Cell, slack: f64, upper: &
     let mut lower = f64::INFINITY;
     for i in 0..27 {
         let certain = b[i] - error;
-        // A negative bound holds as well with the norms as they are only down to -1.
+        // N bounds the product of norms from above, which helps a positive B only; SJ >= -1 always holds.
         let ratio = if certain > 0.0 { certain / n[i] * (1.0 - 4.0 * UNIT) } else { -1.0 };
         lower = lower.min(ratio);
     }
