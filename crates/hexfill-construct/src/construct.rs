@@ -9,6 +9,7 @@ use crate::handlebody::HandlebodyTets;
 use crate::layer::Layer;
 use crate::matching::light_sides;
 use crate::report::{Report, Route};
+use crate::shell::ShellTets;
 use crate::sigma::sigma;
 use crate::split::{core_points, split_tets};
 use crate::start::start_positions;
@@ -109,6 +110,7 @@ pub fn construct(
     let maker: &dyn InteriorTets = match &options.tets {
         Some(maker) => maker.as_ref(),
         None if surface.is_sphere() => &ball,
+        None if surface.genus() == 0 => &ShellTets,
         None => &HandlebodyTets,
     };
     let complex = maker.fill(&request, ctx)?;

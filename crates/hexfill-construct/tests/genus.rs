@@ -145,3 +145,50 @@ fn without_positions_an_odd_torus_is_not_decided() {
     assert!(matches!(existence(&torus(4, 6, 0).unwrap(), None), Existence::Exists { .. }));
     assert!(matches!(existence(&torus(3, 5, 0).unwrap(), None), Existence::OddQuads { given: 15 }));
 }
+
+/// A cube of `n^3` cells with unit cells taken out of its inside, one at each of `holes`.
+fn cube_with_cavities(n: i32, holes: &[[i32; 3]]) -> (QuadSurface, Vec<[f64; 3]>) {
+    use hexfill_mesh::cube::{FACETS, POSITIONS};
+    let filled = |p: [i32; 3]| p.iter().all(|x| (0..n).contains(x)) && !holes.contains(&p);
+    let (mut points, mut quads): (Vec<[f64; 3]>, Vec<[u32; 4]>) = (Vec::new(), Vec::new());
+    for x in 0..n {
+        for y in 0..n {
+            for z in (0..n).filter(|&z| filled([x, y, z])) {
+                for (f, facet) in FACETS.iter().enumerate() {
+                    let mut beside = [x, y, z];
+                    beside[f / 2] += if f % 2 == 0 { -1 } else { 1 };
+                    if !filled(beside) {
+                        quads.push(facet.map(|k| {
+                            let p = POSITIONS[k];
+                            let p = [x, y, z]
+                                .map(f64::from)
+                                .iter()
+                                .zip(p)
+                                .map(|(a, b)| a + f64::from(b))
+                                .collect::<Vec<_>>();
+                            let p = [p[0], p[1], p[2]];
+                            points.iter().position(|q| *q == p).unwrap_or_else(|| {
+                                points.push(p);
+                                points.len() - 1
+                            }) as u32
+                        }));
+                    }
+                }
+            }
+        }
+    }
+    (QuadSurface::try_new(points.len(), &quads).unwrap(), points)
+}
+
+#[test]
+fn cavities() {
+    for holes in [vec![[1, 1, 1]], vec![[1, 1, 1], [3, 3, 3]]] {
+        let (surface, points) = cube_with_cavities(5, &holes);
+        assert_eq!((surface.n_components(), surface.genus()), (holes.len() + 1, 0));
+        let made = construct(&surface, Some(&points), &Options::default(), &Context::default()).unwrap();
+        println!("{} cavities: {}", holes.len(), made.report);
+        check(&surface, &made);
+        let made = construct(&surface, None, &Options::default(), &Context::default());
+        assert!(matches!(made, Err(ConstructError::InteriorNeeded { .. })));
+    }
+}
