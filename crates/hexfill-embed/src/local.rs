@@ -19,7 +19,7 @@ const CLIMB_CELLS: usize = 600;
 /// Untangles where needed. Returns the cells still bad, ascending, and why it stopped.
 pub(crate) fn untangle_bad(
     problem: &Problem,
-    points: &mut Vec<Vector>,
+    points: &mut [Vector],
     context: &Context<'_>,
 ) -> (Vec<usize>, Option<StopReason>) {
     let incidence = Incidence::new(problem);
@@ -108,7 +108,7 @@ fn each(
 /// Raises the worst cells patch by patch, for meshes too large for one program. All cells must be valid.
 pub(crate) fn climb_worst(
     problem: &Problem,
-    points: &mut Vec<Vector>,
+    points: &mut [Vector],
     target: f64,
     rounds: usize,
     context: &Context<'_>,
