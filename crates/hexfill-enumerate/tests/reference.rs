@@ -1,8 +1,8 @@
 //! The reference numbers of the published table and of the design, by both engines; the mass formula; known meshes.
 
-use hexfill_check::{Judged, Level, Options, Rules, judge};
+use hexfill_check::{Judged, Level as Ladder, Options, Rules, judge};
 use hexfill_enumerate::{
-    Boundary, Code, Complex, Filter, Keep, LevelOptions, ListFormat, MASS_UNIT, Params, Plan, Rule, Selection,
+    Boundary, Code, Complex, Filter, Keep, Level, LevelOptions, ListFormat, MASS_UNIT, Params, Plan, Rule, Selection,
     StrictOptions, Tally, Target, Wanted, all_levels, canonical, extend_strict, extend_weill, first_level, line,
     mesh_of, mirror_lines, next_level, run_whole, shape, strict_violations, weill_order, weill_violations,
 };
@@ -18,6 +18,15 @@ fn levels(params: &Params, threads: usize) -> Vec<Tally> {
     let options = LevelOptions { threads, narrow_hashes: false };
     let levels = all_levels(params, &options, Wanted::default(), false, &Context::default()).unwrap();
     levels.into_iter().map(|l| l.tally).collect()
+}
+
+/// A level with the codes of its classes.
+fn classes(n: usize, rule: Rule) -> Level {
+    let ctx = Context::default();
+    let levels = all_levels(&Params::new(n, rule), &LevelOptions::default(), Wanted::default(), true, &ctx).unwrap();
+    let level = levels.into_iter().next_back().unwrap();
+    assert!(level.codes.len() as u64 == level.tally.classes && level.cubes == n);
+    level
 }
 
 fn augmented(params: &Params) -> Tally {
@@ -138,12 +147,11 @@ fn stays_connected(c: &Complex, without: usize) -> bool {
 fn every_mesh_passes_the_judge_under_the_rule_it_claims() {
     let ctx = Context::default();
     for (rule, rules) in [(Rule::Strict, Rules::Strict), (Rule::Weill, Rules::Weill)] {
-        let params = Params::new(top() - 1, rule);
-        for level in all_levels(&params, &LevelOptions::default(), Wanted::default(), true, &ctx).unwrap() {
-            for code in &level.codes {
+        for n in 1..=top() {
+            for code in &classes(n, rule).codes {
                 let c = mesh_of(code, rule).unwrap();
                 let cubes = c.cubes_wide();
-                let options = Options::default().rules(rules).up_to(Level::L2);
+                let options = Options::default().rules(rules).up_to(Ladder::L2);
                 let report = judge(&Judged::connectivity(c.n_vertices(), &cubes), &options, &ctx);
                 assert!(report.no_failure(), "{rule} {}: {report}", code.to_text());
                 assert!(c.to_hex_mesh().is_ok());
@@ -340,10 +348,8 @@ fn settings_do_not_change_results() {
 fn the_signatures_of_the_mesh_crate_tell_the_same_classes_apart() {
     // Another canonical form, by other code: as many names as classes, and the same groups.
     for rule in [Rule::Strict, Rule::Weill] {
-        let levels =
-            all_levels(&Params::new(5, rule), &LevelOptions::default(), Wanted::default(), true, &Context::default())
-                .unwrap();
-        for level in &levels {
+        for n in 1..=5 {
+            let level = classes(n, rule);
             let mut names = BTreeSet::new();
             for code in &level.codes {
                 let mesh = code.decode().unwrap().to_hex_mesh().unwrap();
