@@ -1,5 +1,6 @@
 //! `fill`: from a problem to verified meshes. Picks the strategy, and lets nothing out that the judge refused.
 
+use crate::components::{depths, fill_apart};
 use crate::problem::Problem;
 use hexfill_check::{Judged, Level, judge};
 use hexfill_io::MeshData;
@@ -185,6 +186,23 @@ pub fn check_fillable(surface: &QuadSurface) -> Result<(), FillError> {
 /// # Errors
 /// [`FillError`].
 pub fn fill(problem: &Problem, options: &FillOptions, ctx: &Context<'_>) -> Result<FillResult, FillError> {
+    check_fillable(&problem.surface)?;
+    let apart = problem.surface.n_components() > 1
+        && problem.points.as_ref().is_none_or(|points| depths(&problem.surface, points).iter().all(|&d| d == 0));
+    if apart && matches!(options.interior, InteriorFrom::BuiltIn) {
+        let result = fill_apart(problem, options, ctx)?;
+        result.meshes.iter().try_for_each(|m| verify(&problem.surface, &m.mesh, m.route))?;
+        return Ok(result);
+    }
+    fill_component(problem, options, ctx)
+}
+
+/// Fills one component, or several at once where one lies in another.
+pub(crate) fn fill_component(
+    problem: &Problem,
+    options: &FillOptions,
+    ctx: &Context<'_>,
+) -> Result<FillResult, FillError> {
     let surface = &problem.surface;
     check_fillable(surface)?;
     let small = surface.is_sphere() && surface.n_quads() <= MAX_QUADS;

@@ -13,6 +13,7 @@
 //! ```
 
 pub mod catalog;
+mod components;
 mod fill;
 mod geometry;
 mod problem;

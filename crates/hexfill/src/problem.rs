@@ -1,6 +1,7 @@
 //! [`Problem`]: a surface to fill, wherever it came from: a file, the catalogue, or a signature.
 
 use crate::catalog;
+use crate::components::depths;
 use hexfill_io::{Format, MeshData, ReadError};
 use hexfill_mesh::{Offenders, QuadSurface, SignatureError, SurfaceError, parse_surface_signature};
 use std::path::Path;
@@ -142,9 +143,15 @@ impl Problem {
             if !bad.is_empty() {
                 return Err(ProblemError::NotFinite { name: name.to_owned(), points: bad });
             }
-            if surface.n_components() == 1 && enclosed_volume(&surface, points) < 0.0 {
-                surface = surface.inverted();
-                notes.push("the quads faced inward; they were turned outward".to_owned());
+            let turned = face_outward(&mut surface, points);
+            if turned > 0 {
+                let all = surface.n_components();
+                let which = if all == 1 {
+                    "the quads".to_owned()
+                } else {
+                    format!("the quads of {turned} of {all} components")
+                };
+                notes.push(format!("{which} faced into the solid; they were turned"));
             }
         }
         Ok(Self {
@@ -168,23 +175,49 @@ impl Problem {
     }
 }
 
-/// Six times the volume enclosed by the surface, its quads cut along both diagonals in turn; positive if outward.
+/// Turns every component whose quads face into the solid: outer boundaries outward, boundaries of cavities inward.
+/// Returns how many were turned.
+fn face_outward(surface: &mut QuadSurface, points: &[[f64; 3]]) -> usize {
+    let depths = depths(surface, points);
+    let volumes = enclosed_volumes(surface, points);
+    let wrong: Vec<bool> = depths
+        .iter()
+        .zip(volumes)
+        .map(|(depth, volume)| if depth.is_multiple_of(2) { volume < 0.0 } else { volume > 0.0 })
+        .collect();
+    let turned = wrong.iter().filter(|&&w| w).count();
+    if turned > 0 {
+        let quads: Vec<[u32; 4]> = surface
+            .quads()
+            .iter()
+            .enumerate()
+            .map(|(q, quad)| {
+                let [a, b, c, d] = quad.map(|v| v.0);
+                if wrong[surface.component(hexfill_mesh::QuadId::new(q))] { [a, d, c, b] } else { [a, b, c, d] }
+            })
+            .collect();
+        *surface = QuadSurface::try_new(surface.n_vertices(), &quads).expect("turning a component keeps a surface");
+    }
+    turned
+}
+
+/// A multiple of the volume each component encloses, its quads cut along both diagonals; positive if they face outward.
 /// Only the sign is used. Positions are scaled first, so that no finite input overflows.
-fn enclosed_volume(surface: &QuadSurface, points: &[[f64; 3]]) -> f64 {
+fn enclosed_volumes(surface: &QuadSurface, points: &[[f64; 3]]) -> Vec<f64> {
     let largest = points.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
     let scale = if largest > 0.0 { largest } else { 1.0 };
     let at = |v: hexfill_mesh::VertexId| points[v.index()].map(|x| x / scale);
-    let origin = at(surface.quads()[0][0]);
-    let det = |a: [f64; 3], b: [f64; 3], c: [f64; 3]| {
-        let [a, b, c] = [a, b, c].map(|p| [p[0] - origin[0], p[1] - origin[1], p[2] - origin[2]]);
+    let det = |o: [f64; 3], a: [f64; 3], b: [f64; 3], c: [f64; 3]| {
+        let [a, b, c] = [a, b, c].map(|p| [p[0] - o[0], p[1] - o[1], p[2] - o[2]]);
         a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0])
     };
-    surface
-        .quads()
-        .iter()
-        .map(|q| {
-            let [a, b, c, d] = q.map(at);
-            det(a, b, c) + det(a, c, d) + det(a, b, d) + det(b, c, d)
-        })
-        .sum()
+    let mut origin = vec![None; surface.n_components()];
+    let mut volume = vec![0.0; surface.n_components()];
+    for (q, quad) in surface.quads().iter().enumerate() {
+        let component = surface.component(hexfill_mesh::QuadId::new(q));
+        let [a, b, c, d] = quad.map(at);
+        let o = *origin[component].get_or_insert(a);
+        volume[component] += det(o, a, b, c) + det(o, a, c, d) + det(o, a, b, d) + det(o, b, c, d);
+    }
+    volume
 }
