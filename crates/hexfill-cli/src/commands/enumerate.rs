@@ -323,7 +323,12 @@ fn report(
     for (name, code) in hits {
         text.push_str(&format!("found {name}: {code}\n"));
     }
-    if on_stdout { console.print(text.trim_end()) } else { Ok(console.say(text.trim_end())) }
+    if on_stdout {
+        console.print(text.trim_end())?;
+    } else {
+        console.say(text.trim_end());
+    }
+    Ok(())
 }
 
 fn merge_folder(

@@ -136,7 +136,6 @@ pub fn run(args: &FillArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Res
         inward_limit: args.inward_limit,
         interior: interior(args)?,
         growth: GrowOptions { cap: args.cap, width: args.width.max(1) },
-        ..FillOptions::default()
     };
     let result = hexfill::fill(&problem, &options, ctx)?;
     if result.meshes.is_empty() {
