@@ -1,5 +1,6 @@
 //! Small parsers for flags, and reading and writing where `-` means stdin and stdout.
 
+use crate::console::Console;
 use anyhow::{Context as _, Result, bail};
 use hexfill::Problem;
 use hexfill::io::{Format, MeshData};
@@ -62,8 +63,15 @@ pub fn load_problem(input: &str, from: Option<Format>) -> Result<Problem> {
     }
 }
 
-/// Writes to a path (format by extension unless given) or, for `-`, to stdout.
-pub fn write_data(output: &str, to: Option<Format>, data: &MeshData) -> Result<()> {
+/// Writes to a path (format by extension unless given) or, for `-`, to stdout; notes what the format cannot hold.
+pub fn write_data(output: &str, to: Option<Format>, data: &MeshData, console: &Console) -> Result<()> {
+    let format = match to {
+        Some(format) => Some(format),
+        None => Format::from_path(Path::new(output)).ok(),
+    };
+    for loss in format.map_or_else(Vec::new, |format| data.losses(format)) {
+        console.note(loss);
+    }
     if output == "-" {
         let Some(format) = to else { bail!("writing stdout: name its format with --to") };
         return Ok(hexfill::io::write_to(std::io::stdout().lock(), format, data)?);

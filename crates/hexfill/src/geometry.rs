@@ -65,11 +65,26 @@ pub fn place(
     };
     // The surface's points come back bit for bit, those that no quad uses included.
     points[..boundary.len()].copy_from_slice(boundary);
-    let hexes = filled.mesh.hexes_raw();
-    let judged = Judged::connectivity(filled.mesh.n_vertices(), &hexes).with_points(&points);
-    // Every vertex id of a `HexMesh` has a position here, so every hex has a quality.
-    let cells = cell_quality(&judged).into_iter().flatten().collect();
+    let mut cells = judged_cells(filled, &points);
+    if let (Some(_), Some(start)) = (&embedding, &filled.start)
+        && !cells.iter().all(|c| c.valid)
+    {
+        // An embedding that failed must not leave more invalid cells than it found.
+        let before = judged_cells(filled, start);
+        let count = |cells: &[CellQuality]| cells.iter().filter(|c| c.valid).count();
+        if count(&before) > count(&cells) {
+            points.clone_from(start);
+            cells = before;
+        }
+    }
     Ok(Placed { points, cells, embedding })
+}
+
+/// The judge's numbers on every hex. Every vertex id of a `HexMesh` has a position here, so every hex has a quality.
+fn judged_cells(filled: &Filled, points: &[[f64; 3]]) -> Vec<CellQuality> {
+    let hexes = filled.mesh.hexes_raw();
+    let judged = Judged::connectivity(filled.mesh.n_vertices(), &hexes).with_points(points);
+    cell_quality(&judged).into_iter().flatten().collect()
 }
 
 impl Placed {

@@ -90,11 +90,11 @@ pub fn run(args: &CatalogArgs, console: &Console) -> anyhow::Result<Exit> {
                 console.print(format!("  signature: {}", shown.signature))?;
             }
             if let Some(path) = output {
-                files::write_data(path, None, &entry.data())?;
+                files::write_data(path, None, &entry.data(), console)?;
             }
             if let Some(path) = mesh {
                 let Some(data) = entry.best_mesh() else { bail!("no mesh is shipped for {}", shown.name) };
-                files::write_data(path, None, &data)?;
+                files::write_data(path, None, &data, console)?;
             }
         }
     }

@@ -32,7 +32,7 @@ pub fn run(args: &ConvertArgs, console: &Console) -> anyhow::Result<Exit> {
     for note in &data.notes {
         console.note(note);
     }
-    files::write_data(&args.output, args.to, &data)?;
+    files::write_data(&args.output, args.to, &data, console)?;
     console.say(format!(
         "{}: {} points, {} quads, {} other faces, {} hexes",
         args.output,

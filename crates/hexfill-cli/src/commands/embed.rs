@@ -88,7 +88,7 @@ pub fn run(args: &EmbedArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Re
     if written {
         placed.flag(&mut data);
         data.points.clone_from(&placed.points);
-        files::write_data(&args.output, args.to, &data)?;
+        files::write_data(&args.output, args.to, &data, console)?;
         console.say(format!("written: {}", args.output));
     } else {
         console.say("nothing written: some hexes are not certified, and --require-valid was given");

@@ -182,7 +182,7 @@ pub fn run(args: &FillArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Res
         let mut mesh = MeshOutput { report, geometry: placed.as_ref().map(Placed::report), files: Vec::new() };
         if valid || !args.require_valid {
             let suffix = (args.count > 1).then_some(i + 1);
-            mesh.files = write_mesh(args, &problem, filled, placed.as_ref(), suffix)?;
+            mesh.files = write_mesh(args, &problem, filled, placed.as_ref(), suffix, console)?;
         }
         output.meshes.push(mesh);
     }
@@ -226,6 +226,7 @@ fn write_mesh(
     filled: &Filled,
     placed: Option<&Placed>,
     suffix: Option<usize>,
+    console: &Console,
 ) -> anyhow::Result<Vec<String>> {
     let named = |path: &str| match suffix {
         Some(i) if path != "-" => numbered(path, i),
@@ -238,7 +239,7 @@ fn write_mesh(
             placed.flag(&mut data);
         }
         let path = named(output);
-        files::write_data(&path, args.to, &data)?;
+        files::write_data(&path, args.to, &data, console)?;
         written.push(path);
     }
     if args.view.is_none() && args.picture.is_none() {
