@@ -69,7 +69,16 @@ impl Console {
     /// An error with its causes, on stderr, in one message.
     pub fn error(&self, error: &anyhow::Error) {
         self.finish_progress();
-        eprintln!("{} {error:#}", self.paint("error:", "1;31"));
+        eprintln!("{} {}", self.paint("error:", "1;31"), message(error));
+    }
+
+    /// The error that ends the command: on stderr, and as JSON on stdout where JSON was asked for.
+    pub fn fail(&self, error: &anyhow::Error, exit_code: u8) {
+        self.error(error);
+        if self.json {
+            // Nothing is left to be done if stdout fails as well.
+            let _ = self.print_json(&serde_json::json!({ "error": message(error), "exit_code": exit_code }));
+        }
     }
 
     fn paint(&self, text: &str, code: &str) -> String {
@@ -134,6 +143,17 @@ impl Console {
             bar.finish_and_clear();
         }
     }
+}
+
+/// An error and its causes as one line; causes that a message already contains are not said again.
+fn message(error: &anyhow::Error) -> String {
+    let mut text = String::new();
+    for cause in error.chain().map(ToString::to_string) {
+        if !text.contains(&cause) {
+            text = if text.is_empty() { cause } else { format!("{text}: {cause}") };
+        }
+    }
+    text
 }
 
 fn bar_style(with_total: bool) -> ProgressStyle {

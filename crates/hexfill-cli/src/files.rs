@@ -51,16 +51,17 @@ pub fn read_data(input: &str, from: Option<Format>) -> Result<MeshData> {
         let Some(format) = from else { bail!("reading stdin: name its format with --from") };
         return Ok(hexfill::io::read_from(std::io::stdin().lock(), format, "stdin")?);
     }
+    check_input(input)?;
     Ok(hexfill::io::read_path(Path::new(input), from)?)
 }
 
 /// The problem named by a file, stdin, a catalogue name or a signature.
 pub fn load_problem(input: &str, from: Option<Format>) -> Result<Problem> {
-    if input == "-" {
-        Ok(Problem::from_data("stdin", &read_data(input, from)?)?)
-    } else {
-        Ok(Problem::load(input, from)?)
+    if hexfill::is_named(input) {
+        return Ok(Problem::load(input, None)?);
     }
+    let name = if input == "-" { "stdin" } else { input };
+    Ok(Problem::from_data(name, &read_data(input, from)?)?)
 }
 
 /// Writes to a path (format by extension unless given) or, for `-`, to stdout; notes what the format cannot hold.
@@ -97,6 +98,26 @@ pub fn check_folder(output: &str) -> Result<()> {
         Some(folder) if !folder.is_dir() => {
             bail!("{output}: the folder {} does not exist; create it first", folder.display())
         }
+        _ => Ok(()),
+    }
+}
+
+/// Refuses to read and write, or to write twice, the same file. `-` is never the same.
+pub fn check_distinct(paths: &[&str]) -> Result<()> {
+    let real = |path: &str| std::fs::canonicalize(path).unwrap_or_else(|_| Path::new(path).to_owned());
+    for (i, a) in paths.iter().enumerate().filter(|(_, a)| **a != "-") {
+        if let Some(b) = paths[..i].iter().find(|b| real(b) == real(a)) {
+            bail!("{b} and {a} are the same file; give different names");
+        }
+    }
+    Ok(())
+}
+
+/// Refuses what is no file with a plain word.
+fn check_input(input: &str) -> Result<()> {
+    match std::fs::metadata(input) {
+        Ok(found) if found.is_dir() => bail!("{input} is a folder; give a file"),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => bail!("{input}: no such file"),
         _ => Ok(()),
     }
 }

@@ -43,7 +43,7 @@ pub(crate) struct Common {
     /// Stop after this long (90, 90s, 10m, 2h), keeping the best result so far.
     #[arg(long, global = true, value_name = "TIME", value_parser = files::parse_duration)]
     pub time_limit: Option<Duration>,
-    /// Hold at most this much in memory (bytes, 800M, 6G).
+    /// While growing an atlas or enumerating, hold at most this much in memory (bytes, 800M, 6G).
     #[arg(long, global = true, value_name = "SIZE", value_parser = files::parse_size)]
     pub memory_limit: Option<u64>,
     /// Say less: errors only.
@@ -133,8 +133,9 @@ fn main() -> ExitCode {
         Ok(code) => code.into(),
         Err(error) if exit::is_broken_pipe(&error) => Exit::Done.into(),
         Err(error) => {
-            console.error(&error);
-            exit::code_of(&error).into()
+            let code = exit::code_of(&error);
+            console.fail(&error, code as u8);
+            code.into()
         }
     }
 }

@@ -293,3 +293,27 @@ fn real_surfaces_are_constructed_and_judged() {
         assert!(passed(&judged(dir.path(), "m.vtu", path), 3), "{name}");
     }
 }
+
+#[test]
+fn points_on_one_spot_cost_the_geometry_and_not_the_mesh() {
+    let dir = tempfile::tempdir().unwrap();
+    let faces = "f 1 5 8 4\nf 2 3 7 6\nf 1 2 6 5\nf 4 8 7 3\nf 1 4 3 2\nf 5 6 7 8\n";
+    std::fs::write(dir.path().join("s.obj"), format!("{}{faces}", "v 3 3 3\n".repeat(8))).unwrap();
+    let (code, _, err) = hexfill(dir.path(), &["fill", "s.obj", "-o", "m.vtk", "--no-embed"]);
+    assert_eq!(code, 0, "{err}");
+    let (code, _, err) = hexfill(dir.path(), &["fill", "s.obj", "-o", "m.vtk"]);
+    assert_eq!(code, 1, "{err}");
+    assert!(passed(&judged(dir.path(), "m.vtk", "s.obj"), 3));
+    let (code, _, err) = hexfill(dir.path(), &["fill", "s.obj", "-o", "n.vtk", "--require-valid"]);
+    assert_eq!(code, 1, "{err}");
+    assert!(!dir.path().join("n.vtk").exists());
+}
+
+#[test]
+fn fewer_meshes_than_asked_for_are_said() {
+    let dir = tempfile::tempdir().unwrap();
+    let args = ["fill", ":cube", "--count", "5", "--max-hexes", "1", "-o", "m.vtk", "--no-embed"];
+    let (code, _, err) = hexfill(dir.path(), &args);
+    assert_eq!(code, 1, "{err}");
+    assert!(err.contains("1 of 5 meshes asked for were found"), "{err}");
+}

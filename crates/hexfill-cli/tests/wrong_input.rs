@@ -86,6 +86,7 @@ fn surfaces_without_a_hex_mesh() {
 fn broken_files() {
     let high = FACES.replace("f 5 6 7 8", "f 5 6 7 9");
     refused("high.obj", &obj(CUBE, &high), &["high.obj:14", "9"]);
+    refused("copy.obj", &obj(CUBE, &format!("{FACES}f 8 7 6 5\n")), &["q6", "same four vertices"]);
     let twice = FACES.replace("f 5 6 7 8", "f 5 6 7 7");
     refused("twice.obj", &obj(CUBE, &twice), &["twice"]);
     refused("nan.obj", &obj(&CUBE.replace("v 1 1 1", "v 1 nan 1"), FACES), &["nan.obj:7", "finite"]);
@@ -117,7 +118,15 @@ fn wrong_usage() {
         }
     };
     no(&["fill"], &["Usage"]);
-    no(&["fill", "missing.obj"], &["missing.obj"]);
+    no(&["fill", "missing.obj"], &["missing.obj", "no such file"]);
+    no(&["fill", "."], &["folder"]);
+    no(&["fill", ":cube", "-o", "a.vtk", "--view", "a.vtk"], &["same file"]);
+    no(&["fill", ":cube", "--picture", "a.jpg"], &["a.jpg", ".png"]);
+    no(&["fill", ":cube", "-o", "-", "--to", "vtk", "--json"], &["--json"]);
+    std::fs::write(dir.path().join("cube.obj"), format!("{CUBE}{FACES}")).unwrap();
+    no(&["fill", "cube.obj", "-o", "cube.obj"], &["same file"]);
+    std::os::unix::fs::symlink("cube.obj", dir.path().join("link.obj")).unwrap();
+    no(&["fill", "cube.obj", "-o", "link.obj"], &["same file"]);
     no(&["fill", ":no-such-problem"], &[":no-such-problem", ":schneiders-pyramid"]);
     no(&["fill", "Q1:nonsense"], &["Q1:nonsense"]);
     no(&["fill", ":cube", "-o", "cube.unknown"], &["cube.unknown", "extension"]);
@@ -133,4 +142,45 @@ fn wrong_usage() {
     std::fs::write(dir.path().join("a.hxgrow"), "not an atlas at all").unwrap();
     no(&["atlas", "build", "-o", "a.hxgrow"], &["not a hexfill atlas"]);
     no(&["atlas", "stats", "a.hxgrow"], &["not a hexfill atlas"]);
+}
+
+#[test]
+fn errors_are_json_where_json_was_asked_for_and_say_a_thing_once() {
+    let dir = tempfile::tempdir().unwrap();
+    let (code, out, err) = hexfill(dir.path(), &["info", "Q1:nonsense", "--json"]);
+    assert_eq!(code, 2);
+    let value: serde_json::Value = serde_json::from_str(&out).unwrap();
+    assert_eq!(value["exit_code"], 2);
+    let message = value["error"].as_str().unwrap();
+    assert!(err.contains(message));
+    let half = &message[message.len() / 2..];
+    assert_eq!(message.matches(half).count(), 1, "{message}");
+}
+
+#[test]
+fn an_atlas_that_does_not_fit_in_memory_is_not_called_complete() {
+    let dir = tempfile::tempdir().unwrap();
+    let build = ["atlas", "build", "--cap", "20", "--levels", "9", "-o", "a.hxgrow", "--json"];
+    let (code, out, err) = hexfill(dir.path(), &[&build[..], &["--memory-limit", "1"]].concat());
+    assert_eq!(code, 3, "{err}");
+    let value: serde_json::Value = serde_json::from_str(&out).unwrap();
+    assert_eq!((&value["exhausted"], &value["stopped"]), (&false.into(), &"memory-limit".into()));
+    let (code, out, _) = hexfill(dir.path(), &build);
+    assert_eq!(code, 0);
+    let value: serde_json::Value = serde_json::from_str(&out).unwrap();
+    assert_eq!((&value["levels"], &value["thinned"]), (&9.into(), &0.into()));
+}
+
+#[test]
+fn a_full_disk_is_an_error_and_no_panic() {
+    for args in [&["completions", "bash"][..], &["catalog"], &["info", ":cube"]] {
+        let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+        let status = std::process::Command::new(assert_cmd::cargo::cargo_bin("hexfill"))
+            .args(args)
+            .stdout(full)
+            .stderr(std::process::Stdio::null())
+            .status()
+            .unwrap();
+        assert_eq!(status.code(), Some(2), "{args:?}");
+    }
 }

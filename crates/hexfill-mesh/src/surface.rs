@@ -64,6 +64,12 @@ pub enum SurfaceError {
         /// The vertex.
         vertex: VertexId,
     },
+    /// Quads with the same four vertices.
+    #[error("{} quads have the same four vertices as an earlier one: {quads}; remove the copies", quads.count)]
+    RepeatedQuads {
+        /// The copies.
+        quads: Offenders<QuadId>,
+    },
     /// Edges with one quad only.
     #[error("the surface is open: {} boundary edges with one quad only: {edges}; close the holes (or merge duplicate points)", edges.count)]
     Open {
@@ -218,6 +224,10 @@ impl QuadSurface {
             }
         }
         if !non_manifold.is_empty() {
+            let quads = self.copies();
+            if !quads.is_empty() {
+                return Err(SurfaceError::RepeatedQuads { quads });
+            }
             return Err(SurfaceError::NonManifoldEdges { edges: non_manifold });
         }
         if !open.is_empty() {
@@ -225,6 +235,25 @@ impl QuadSurface {
         }
         self.twin = twin;
         Ok(())
+    }
+
+    /// Quads with the vertices of an earlier quad: the likely cause of edges with too many quads.
+    fn copies(&self) -> Offenders<QuadId> {
+        let mut named: Vec<([VertexId; 4], usize)> = self
+            .quads
+            .iter()
+            .enumerate()
+            .map(|(q, quad)| {
+                let mut vertices = *quad;
+                vertices.sort_unstable();
+                (vertices, q)
+            })
+            .collect();
+        named.sort_unstable();
+        let mut copies: Vec<usize> =
+            named.chunk_by(|a, b| a.0 == b.0).flat_map(|run| run[1..].iter().map(|(_, q)| *q)).collect();
+        copies.sort_unstable();
+        copies.into_iter().map(QuadId::new).collect()
     }
 
     /// Numbers the components and reverses the minority orientation in each.
@@ -494,6 +523,12 @@ mod tests {
         open.pop();
         match QuadSurface::try_new(8, &open) {
             Err(SurfaceError::Open { edges }) => assert_eq!(edges.count, 4),
+            other => panic!("{other:?}"),
+        }
+        let mut twice = cube();
+        twice.push([2, 1, 0, 3]);
+        match QuadSurface::try_new(8, &twice) {
+            Err(SurfaceError::RepeatedQuads { quads }) => assert_eq!(quads.first, [QuadId(6)]),
             other => panic!("{other:?}"),
         }
         let mut three = cube();

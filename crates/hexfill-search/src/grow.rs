@@ -365,7 +365,13 @@ impl Growth {
             return report;
         }
         let pending = pending.into_iter().map(|m| m.into_inner().expect("no thread panicked")).collect();
-        report.thinned = self.settle(pending, ctx.memory_limit);
+        match self.settle(pending, ctx.memory_limit) {
+            Some(thinned) => report.thinned = thinned,
+            None => {
+                report.stopped = Some(StopReason::MemoryLimit);
+                return report;
+            }
+        }
         report.kept = self.frontier.len() as u64;
         report.classes = self.n_classes();
         report.states = self.n_states();
@@ -419,8 +425,9 @@ impl Growth {
         legal
     }
 
-    /// Ends a level: accepts the pending states class by class, in the order of their hashes.
-    fn settle(&mut self, pending: Vec<FxHashMap<ClassHash, PendingClass>>, memory_limit: Option<u64>) -> u64 {
+    /// Ends a level: accepts the pending states class by class, in the order of their hashes. Returns how many classes were
+    /// left out for want of memory; `None`, with nothing changed, if no room is left for any.
+    fn settle(&mut self, pending: Vec<FxHashMap<ClassHash, PendingClass>>, memory_limit: Option<u64>) -> Option<u64> {
         let mut classes: Vec<(ClassHash, PendingClass)> = pending.into_iter().flatten().collect();
         classes.par_sort_unstable_by_key(|(class, _)| *class);
         let mut thinned = 0;
@@ -435,6 +442,9 @@ impl Growth {
                 thinned += (before - classes.len()) as u64;
                 cap -= 2;
             }
+            if classes.is_empty() && thinned > 0 {
+                return None;
+            }
         }
         self.frontier.clear();
         self.level_starts.push(self.states.len() as u32);
@@ -445,7 +455,7 @@ impl Growth {
                 if self.blocked[start..].iter().any(|b| is_subset(b, &candidate.blocked)) {
                     continue;
                 }
-                let Ok(id) = u32::try_from(self.states.len()) else { return thinned };
+                let Ok(id) = u32::try_from(self.states.len()) else { return Some(thinned) };
                 let previous = self.newest[shard_of(class)].insert(class, id).unwrap_or(u32::MAX);
                 self.states.push(State {
                     parent: candidate.parent,
@@ -462,7 +472,7 @@ impl Growth {
                 });
             }
         }
-        thinned
+        Some(thinned)
     }
 }
 

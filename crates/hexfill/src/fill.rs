@@ -327,7 +327,14 @@ fn construct(
         InteriorFrom::Tetgen(program) => Some(Box::new(program.clone())),
     };
     let how = hexfill_construct::Options { tets, ..hexfill_construct::Options::default() };
-    let made = hexfill_construct::construct(&problem.surface, problem.points.as_deref(), &how, ctx)?;
+    let made = match hexfill_construct::construct(&problem.surface, problem.points.as_deref(), &how, ctx) {
+        Err(hexfill_construct::ConstructError::Stopped(reason)) => {
+            result.stop = reason;
+            result.tried.push("construction, stopped before the mesh was complete".to_owned());
+            return Ok(());
+        }
+        made => made?,
+    };
     result.tried.push(made.report.to_string());
     if made.mesh.n_hexes() as u64 <= u64::from(options.max_hexes) {
         accept(&problem.surface, made.mesh, Route::Construction, made.start, options, result)?;
@@ -388,8 +395,8 @@ pub struct FillReport {
     pub hexes_per_quad: f64,
     /// Vertices that are not on the surface.
     pub interior_vertices: usize,
-    /// Sheets of the mesh.
-    pub sheets: usize,
+    /// Sheets of the mesh, counted up to a million hexes.
+    pub sheets: Option<usize>,
     /// How it was found.
     pub route: Route,
     /// Canonical signature of the mesh, for meshes of at most 10,000 hexes.
@@ -408,7 +415,7 @@ impl FillReport {
             hexes,
             hexes_per_quad: hexes as f64 / quads as f64,
             interior_vertices: filled.mesh.n_interior_vertices(),
-            sheets: sheets(&filled.mesh).len(),
+            sheets: (hexes <= 1_000_000).then(|| sheets(&filled.mesh).len()),
             route: filled.route,
             signature: (hexes <= 10_000).then(|| hex_signature(&filled.mesh).ok()).flatten(),
             tried: tried.to_vec(),

@@ -15,8 +15,10 @@ pub struct Placed {
     pub points: Vec<[f64; 3]>,
     /// Per hex: its quality and whether det J > 0 was certified on all of it.
     pub cells: Vec<CellQuality>,
-    /// What the embedding reports; absent if only start positions were asked for.
+    /// What the embedding reports; absent if only start positions were asked for, or none could be made.
     pub embedding: Option<EmbedReport>,
+    /// Why there are no useful positions of the interior: the boundary's own do not span a solid.
+    pub refused: Option<String>,
 }
 
 /// Numbers about the geometry of a mesh, for people and for JSON.
@@ -32,6 +34,8 @@ pub struct GeometryReport {
     pub certified_scaled_jacobian: f64,
     /// What the embedding reports.
     pub embedding: Option<EmbedReport>,
+    /// Why the boundary's positions cannot be used.
+    pub refused: Option<String>,
 }
 
 /// The positions of a problem's vertices: its own, or those of the canonical polyhedron of a sphere without any.
@@ -44,16 +48,33 @@ pub fn boundary_points(problem: &Problem) -> Option<Vec<[f64; 3]>> {
 }
 
 /// Places a filling: with `options` it is embedded, without it gets start positions only (the construction's, or Tutte's).
-///
-/// # Errors
-/// [`EmbedError`] if the boundary positions cannot be used; there is then no geometry, whatever the interior.
+/// Boundary positions that cannot be used (all in one spot, say) cost the geometry, never the mesh: interior vertices then
+/// lie on a boundary vertex, and `refused` says why.
 pub fn place(
     filled: &Filled,
     boundary: &[[f64; 3]],
     options: Option<&hexfill_embed::Options>,
     ctx: &Context<'_>,
-) -> Result<Placed, EmbedError> {
-    let (mut points, embedding) = match options {
+) -> Placed {
+    let made = positions(filled, boundary, options, ctx);
+    let refused = made.as_ref().err().map(ToString::to_string);
+    let (mut points, embedding) = made.unwrap_or_else(|_| {
+        let anywhere = boundary.first().copied().unwrap_or_default();
+        let mut points = boundary.to_vec();
+        points.resize(filled.mesh.n_vertices(), anywhere);
+        (points, None)
+    });
+    place_from(filled, boundary, &mut points, embedding, refused)
+}
+
+/// Positions by the embedding, or to start from.
+fn positions(
+    filled: &Filled,
+    boundary: &[[f64; 3]],
+    options: Option<&hexfill_embed::Options>,
+    ctx: &Context<'_>,
+) -> Result<(Vec<[f64; 3]>, Option<EmbedReport>), EmbedError> {
+    Ok(match options {
         Some(options) => {
             let made = embed(&filled.mesh, boundary, filled.start.as_deref(), options, ctx)?;
             (made.points, Some(made.report))
@@ -62,10 +83,20 @@ pub fn place(
             Some(start) => (start.clone(), None),
             None => (tutte_start(&filled.mesh, boundary)?, None),
         },
-    };
+    })
+}
+
+/// Boundary positions put back, the better of two placements kept, every hex judged.
+fn place_from(
+    filled: &Filled,
+    boundary: &[[f64; 3]],
+    points: &mut Vec<[f64; 3]>,
+    embedding: Option<EmbedReport>,
+    refused: Option<String>,
+) -> Placed {
     // The surface's points come back bit for bit, those that no quad uses included.
     points[..boundary.len()].copy_from_slice(boundary);
-    let mut cells = judged_cells(filled, &points);
+    let mut cells = judged_cells(filled, points);
     if let (Some(_), Some(start)) = (&embedding, &filled.start)
         && !cells.iter().all(|c| c.valid)
     {
@@ -77,7 +108,7 @@ pub fn place(
             cells = before;
         }
     }
-    Ok(Placed { points, cells, embedding })
+    Placed { points: std::mem::take(points), cells, embedding, refused }
 }
 
 /// The judge's numbers on every hex. Every vertex id of a `HexMesh` has a position here, so every hex has a quality.
@@ -102,6 +133,7 @@ impl Placed {
             corner_scaled_jacobian: least(|c| c.corner_scaled_jacobian),
             certified_scaled_jacobian: least(|c| c.certified_lower),
             embedding: self.embedding.clone(),
+            refused: self.refused.clone(),
         }
     }
 
@@ -128,6 +160,9 @@ impl std::fmt::Display for GeometryReport {
             );
         }
         write!(f, "det J > 0 certified in {} of {} hexes only", self.certified, self.hexes)?;
+        if let Some(why) = &self.refused {
+            return write!(f, "; no positions were made: {why}");
+        }
         let Some(e) = &self.embedding else { return write!(f, " (start positions, not embedded)") };
         write!(f, "; {} starts, {} valid", e.starts, e.valid_starts)?;
         let worst: Vec<String> = e.worst_cells.iter().take(5).map(|c| c.hex.to_string()).collect();

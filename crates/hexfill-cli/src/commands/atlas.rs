@@ -72,6 +72,8 @@ struct BuildReport {
     classes: u64,
     states: u64,
     memory_bytes: u64,
+    /// Classes left out in this run to stay within the memory limit.
+    thinned: u64,
     exhausted: bool,
     stopped: Option<&'static str>,
 }
@@ -100,10 +102,15 @@ pub fn run(args: &AtlasArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Re
         }
         AtlasCommand::Prune { file, output, max_quads, max_hexes, width } => {
             files::check_folder(output)?;
+            files::check_distinct(&[&file.to_string_lossy(), output])?;
             let atlas = Atlas::read_path(file)?;
             let pruned = atlas.pruned(*width, |quads, hexes| quads <= *max_quads || hexes <= *max_hexes);
             files::write_file(output, |out| pruned.write_packed(out))?;
             let bytes = std::fs::metadata(output)?.len();
+            if console.json {
+                console
+                    .print_json(&serde_json::json!({ "file": output, "states": pruned.n_states(), "bytes": bytes }))?;
+            }
             console.say(format!("{output}: {} of {} states, {bytes} bytes", pruned.n_states(), atlas.n_states()));
             Ok(Exit::Done)
         }
@@ -116,6 +123,7 @@ fn build(path: &Path, options: GrowOptions, levels: u32, console: &Console, ctx:
         console.say(format!("going on from level {} ({} states)", growth.level(), growth.n_states()));
     }
     let mut stopped = None;
+    let mut thinned = 0;
     while growth.level() < levels && !growth.is_exhausted() {
         let start = Instant::now();
         let report = growth.grow(ctx);
@@ -124,6 +132,7 @@ fn build(path: &Path, options: GrowOptions, levels: u32, console: &Console, ctx:
             break;
         }
         log.append(&growth, &report)?;
+        thinned += report.thinned;
         if console.verbose > 0 {
             console.say(format!(
                 "level {:3}: {:9} flips, {:8} states kept, {:9} classes, {:9} states, {} thinned, {:.0} flips/s, {} MB",
@@ -143,6 +152,7 @@ fn build(path: &Path, options: GrowOptions, levels: u32, console: &Console, ctx:
         classes: growth.n_classes(),
         states: growth.n_states(),
         memory_bytes: growth.memory(),
+        thinned,
         exhausted: growth.is_exhausted(),
         stopped: stopped.map(stop_word),
     };
@@ -158,8 +168,17 @@ fn build(path: &Path, options: GrowOptions, levels: u32, console: &Console, ctx:
             if report.exhausted { "; nothing is left to grow from" } else { "" }
         ))?;
     }
-    if stopped.is_some() {
-        console.say(format!("stopped; the same command goes on from level {}", report.levels));
+    if thinned > 0 {
+        console
+            .note(format!("{thinned} classes were left out to stay within --memory-limit: this atlas proves no bound"));
+    }
+    match stopped {
+        Some(StopReason::MemoryLimit) => console.say(format!(
+            "the memory limit leaves no room for level {}; the same command with a larger --memory-limit goes on",
+            report.levels + 1
+        )),
+        Some(_) => console.say(format!("stopped; the same command goes on from level {}", report.levels)),
+        None => {}
     }
     Ok(Exit::of_stop(stopped.unwrap_or(StopReason::Finished), Exit::Done))
 }

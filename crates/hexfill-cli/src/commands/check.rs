@@ -6,7 +6,9 @@ use crate::files;
 use anyhow::{Context as _, bail};
 use hexfill::Context;
 use hexfill::check::{Judged, Options, Rules, cell_quality, certificate_of, judge, verify_certificate, write_cell_csv};
-use hexfill::io::Format;
+use hexfill::io::{Format, MeshData};
+use hexfill::mesh::cube::FACETS;
+use std::collections::BTreeSet;
 use std::io::Write;
 
 /// Flags of `check`.
@@ -45,6 +47,20 @@ enum RulesArg {
     Weill,
 }
 
+/// How many quads are listed in the file but no boundary of its hexes, or the other way round.
+fn faces_not_on_boundary(data: &MeshData) -> usize {
+    let sorted = |mut q: [u32; 4]| {
+        q.sort_unstable();
+        q
+    };
+    let mut facets: Vec<[u32; 4]> = data.hexes.iter().flat_map(|h| FACETS.map(|f| sorted(f.map(|i| h[i])))).collect();
+    facets.sort_unstable();
+    let boundary: BTreeSet<[u32; 4]> =
+        facets.chunk_by(|a, b| a == b).filter(|run| run.len() == 1).map(|run| run[0]).collect();
+    let listed: BTreeSet<[u32; 4]> = data.quads.iter().map(|&q| sorted(q)).collect();
+    listed.symmetric_difference(&boundary).count()
+}
+
 /// Judges and reports; exit code 1 if a rule is broken.
 pub fn run(args: &CheckArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
     let data = files::read_data(&args.mesh, args.from)?;
@@ -56,6 +72,14 @@ pub fn run(args: &CheckArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Re
     }
     let highest = data.hexes.iter().flatten().max().map_or(0, |&v| v as usize + 1);
     let n_vertices = if data.has_coordinates { data.points.len() } else { highest };
+    if args.surface.is_none() && !data.quads.is_empty() {
+        let differ = faces_not_on_boundary(&data);
+        if differ > 0 {
+            console.note(format!(
+                "{differ} quads are faces of the file or boundary of the mesh, but not both; give --surface FILE to have a surface judged"
+            ));
+        }
+    }
     let problem = args.surface.as_ref().map(|s| files::load_problem(s, None)).transpose()?;
     let quads: Option<Vec<[u32; 4]>> =
         problem.as_ref().map(|p| p.surface.quads().iter().map(|q| q.map(|v| v.0)).collect());

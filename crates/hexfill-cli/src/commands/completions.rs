@@ -2,6 +2,7 @@
 
 use crate::exit::Exit;
 use clap::CommandFactory;
+use std::io::Write;
 
 /// Flags of `completions`.
 #[derive(clap::Args)]
@@ -12,6 +13,9 @@ pub struct CompletionsArgs {
 
 /// Prints the completion script.
 pub fn run(args: &CompletionsArgs) -> anyhow::Result<Exit> {
-    clap_complete::generate(args.shell, &mut crate::Cli::command(), "hexfill", &mut std::io::stdout());
+    // Into memory first: the generator panics if its writer fails.
+    let mut script = Vec::new();
+    clap_complete::generate(args.shell, &mut crate::Cli::command(), "hexfill", &mut script);
+    std::io::stdout().write_all(&script)?;
     Ok(Exit::Done)
 }

@@ -33,6 +33,15 @@ pub fn run(args: &ConvertArgs, console: &Console) -> anyhow::Result<Exit> {
         console.note(note);
     }
     files::write_data(&args.output, args.to, &data, console)?;
+    if console.json && args.output != "-" {
+        console.print_json(&serde_json::json!({
+            "file": args.output,
+            "points": data.points.len(),
+            "quads": data.quads.len(),
+            "other_faces": data.other_faces.len(),
+            "hexes": data.hexes.len(),
+        }))?;
+    }
     console.say(format!(
         "{}: {} points, {} quads, {} other faces, {} hexes",
         args.output,

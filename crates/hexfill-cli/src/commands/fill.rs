@@ -117,6 +117,19 @@ pub fn run(args: &FillArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Res
     for file in args.view.iter().chain(&args.picture) {
         files::check_folder(file)?;
     }
+    if let Some(picture) = args.picture.as_ref().filter(|p| !p.to_ascii_lowercase().ends_with(".png")) {
+        bail!("{picture}: pictures are PNG; give a name that ends in .png");
+    }
+    if console.json && args.output.as_deref() == Some("-") {
+        bail!("--json and -o - both write to stdout; give a file to one of them");
+    }
+    let written = [&args.output, &args.view, &args.picture];
+    let named: Vec<&str> = std::iter::once(&args.surface)
+        .filter(|s| !hexfill::is_named(s))
+        .chain(written.into_iter().flatten())
+        .map(String::as_str)
+        .collect();
+    files::check_distinct(&named)?;
     let problem = files::load_problem(&args.surface, args.from)?;
     for note in &problem.notes {
         console.note(note);
@@ -176,7 +189,7 @@ pub fn run(args: &FillArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Res
     let mut all_valid = true;
     for (i, filled) in result.meshes.iter().enumerate() {
         let report = FillReport::new(&problem, filled, &result.tried);
-        let placed = boundary.as_deref().map(|b| position(args, filled, b, ctx)).transpose()?;
+        let placed = boundary.as_deref().map(|b| position(args, filled, b, ctx));
         let valid = args.no_embed || placed.as_ref().is_none_or(Placed::is_certified);
         all_valid &= valid;
         let mut mesh = MeshOutput { report, geometry: placed.as_ref().map(Placed::report), files: Vec::new() };
@@ -187,12 +200,13 @@ pub fn run(args: &FillArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Res
         output.meshes.push(mesh);
     }
     output.seconds = start.elapsed().as_secs_f64();
-    if console.json && args.output.as_deref() != Some("-") {
+    if console.json {
         console.print_json(&output)?;
     } else {
         say(&output, args, console);
     }
-    Ok(Exit::of_stop(result.stop, if all_valid { Exit::Done } else { Exit::No }))
+    let enough = output.meshes.len() == args.count as usize;
+    Ok(Exit::of_stop(result.stop, if all_valid && enough { Exit::Done } else { Exit::No }))
 }
 
 /// Where the tetrahedra of an interior that is not a ball come from.
@@ -213,10 +227,10 @@ fn interior(args: &FillArgs) -> anyhow::Result<InteriorFrom> {
 }
 
 /// Embeds a mesh, or gives it start positions.
-fn position(args: &FillArgs, filled: &Filled, boundary: &[[f64; 3]], ctx: &Context<'_>) -> anyhow::Result<Placed> {
+fn position(args: &FillArgs, filled: &Filled, boundary: &[[f64; 3]], ctx: &Context<'_>) -> Placed {
     let options = hexfill::embed::Options::default();
     let limited = ctx.with_time_limit(args.embed_limit);
-    Ok(hexfill::place(filled, boundary, (!args.no_embed).then_some(&options), &limited)?)
+    hexfill::place(filled, boundary, (!args.no_embed).then_some(&options), &limited)
 }
 
 /// Writes the mesh, its page and its picture; returns the names of the files.
@@ -274,14 +288,14 @@ fn say(output: &Output, args: &FillArgs, console: &Console) {
     for mesh in &output.meshes {
         let r = &mesh.report;
         console.say(format!(
-            "{}: {} quads filled with {} hex{} ({:.1} per quad), {} interior vertices, {} sheets, by {}",
+            "{}: {} quads filled with {} hex{} ({:.1} per quad), {} interior vertices{}, by {}",
             r.surface,
             r.quads,
             r.hexes,
             if r.hexes == 1 { "" } else { "es" },
             r.hexes_per_quad,
             r.interior_vertices,
-            r.sheets,
+            r.sheets.map_or(String::new(), |n| format!(", {n} sheets")),
             route_words(r.route),
         ));
         console.say("connectivity: judged proper, boundary = surface (L1-L3)");

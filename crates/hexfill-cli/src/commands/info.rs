@@ -121,7 +121,10 @@ fn describe(surface: &QuadSurface, points: Option<&[[f64; 3]]>) -> SurfaceInfo {
     let (hex_mesh, because, bounding_cycle) = verdict(surface, points);
     let mut degrees = BTreeMap::new();
     for v in 0..surface.n_vertices() {
-        *degrees.entry(surface.degree(hexfill::mesh::VertexId::new(v))).or_insert(0) += 1;
+        let degree = surface.degree(hexfill::mesh::VertexId::new(v));
+        if degree > 0 {
+            *degrees.entry(degree).or_insert(0) += 1;
+        }
     }
     let chords = chords(surface);
     SurfaceInfo {

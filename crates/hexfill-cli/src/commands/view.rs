@@ -56,6 +56,9 @@ pub fn run(args: &ViewArgs, console: &Console) -> anyhow::Result<Exit> {
     } else {
         shown.write_page(&args.output)?;
     }
+    if console.json {
+        console.print_json(&serde_json::json!({ "file": args.output, "hexes": mesh.n_hexes() }))?;
+    }
     console.say(format!("{}: {} hexes", args.output, mesh.n_hexes()));
     Ok(Exit::Done)
 }
