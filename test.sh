@@ -28,5 +28,12 @@ else
     echo "skipped: npm is not installed"
 fi
 
+step "MPI driver"
+if command -v mpirun >/dev/null && command -v mpicc >/dev/null; then
+    cargo test --manifest-path crates/hexfill-mpi/Cargo.toml --locked
+else
+    echo "skipped: MPI is not installed (apt-get install -y mpich libmpich-dev libclang-dev)"
+fi
+
 step "the README's main command"
 python3 tests/readme.py

@@ -222,7 +222,7 @@ fn an_interrupted_fill_says_so_and_goes_on() {
         "--no-embed",
         "--growth-log",
         "grow.hxgrow",
-        "--inward-limit",
+        "--inward-cavities",
         "0",
     ];
     let child = start(dir.path(), &args);

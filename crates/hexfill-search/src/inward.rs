@@ -25,13 +25,15 @@ pub struct FillOptions {
     pub count: usize,
     /// How many cavities the beam keeps on each level.
     pub beam: usize,
+    /// How many cavities to look at before giving up: a bound that does not depend on the clock.
+    pub max_cavities: u64,
     /// Look on for smaller fillings after the first until the context stops the search or the beam is empty.
     pub improve: bool,
 }
 
 impl Default for FillOptions {
     fn default() -> Self {
-        Self { max_hexes: 4096, count: 1, beam: 1000, improve: false }
+        Self { max_hexes: 4096, count: 1, beam: 1000, max_cavities: 1_000_000, improve: false }
     }
 }
 
@@ -100,7 +102,7 @@ pub fn fill_from_atlas(
             break;
         }
         depth += 1;
-        if depth + 1 > search.most_allowed() {
+        if depth + 1 > search.most_allowed() || outcome.cavities >= options.max_cavities {
             break;
         }
         let (next, looked_at, stop) = search.step(beam, depth, ctx);

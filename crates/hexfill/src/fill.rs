@@ -14,7 +14,6 @@ use hexfill_search::{
 use serde::Serialize;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::Duration;
 
 /// How to fill.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -59,8 +58,9 @@ pub struct FillOptions {
     pub growth_log: Option<PathBuf>,
     /// Options of that growth.
     pub growth: GrowOptions,
-    /// How long inward flips may take before the next strategy has its turn.
-    pub inward_limit: Duration,
+    /// How many cavities inward flips may look at before the next strategy has its turn (no clock: the same result
+    /// every time).
+    pub inward_cavities: u64,
     /// Where the construction gets the tetrahedra of an interior that is not a ball.
     pub interior: InteriorFrom,
 }
@@ -75,7 +75,7 @@ impl Default for FillOptions {
             atlas: None,
             growth_log: None,
             growth: GrowOptions::default(),
-            inward_limit: Duration::from_secs(10),
+            inward_cavities: 1_000_000,
             interior: InteriorFrom::BuiltIn,
         }
     }
@@ -244,10 +244,10 @@ fn search(
         // Several placements may be isomorphic as meshes: look for more than are asked for.
         count: if options.count == 1 { 1 } else { 8 * options.count },
         improve: options.improve,
+        max_cavities: if options.improve { u64::MAX } else { options.inward_cavities },
         ..InwardOptions::default()
     };
-    let limited = if options.improve { *ctx } else { ctx.with_time_limit(options.inward_limit) };
-    let outcome = fill_from_atlas(surface, atlas, &inward, &limited).expect("the caller checked: a small sphere");
+    let outcome = fill_from_atlas(surface, atlas, &inward, ctx).expect("the caller checked: a small sphere");
     result.tried.push(format!("atlas of {} states, inward flips over {} cavities", atlas.n_states(), outcome.cavities));
     for filling in outcome.fillings {
         let route = if filling.glued == 0 { Route::Atlas } else { Route::InwardFlips };

@@ -58,9 +58,9 @@ pub struct FillArgs {
     /// Most quads a ball may have while growing towards the surface.
     #[arg(long, default_value_t = 24, value_name = "N")]
     cap: usize,
-    /// How long inward flips may take before the next strategy has its turn.
-    #[arg(long, default_value = "10s", value_name = "TIME", value_parser = files::parse_duration)]
-    inward_limit: Duration,
+    /// How many cavities inward flips may look at before the next strategy has its turn.
+    #[arg(long, default_value_t = 1_000_000, value_name = "N")]
+    inward_cavities: u64,
     /// A tetrahedral mesh of the inside, for surfaces that are not spheres (boundary: the quads cut along diagonals).
     #[arg(long, value_name = "FILE", conflicts_with = "tetgen")]
     tets: Option<String>,
@@ -146,7 +146,7 @@ pub fn run(args: &FillArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Res
         improve: args.improve,
         atlas: args.atlas.as_deref().map(Atlas::read_path).transpose()?.map(Arc::new),
         growth_log: args.growth_log.clone().or_else(|| own_log.clone()),
-        inward_limit: args.inward_limit,
+        inward_cavities: args.inward_cavities,
         interior: interior(args)?,
         growth: GrowOptions { cap: args.cap, width: args.width.max(1) },
     };
