@@ -1,6 +1,6 @@
 //! Surfaces of several components: which lies inside which, and filling those that lie apart one by one.
 
-use crate::fill::{FillError, FillOptions, FillResult, Filled, Route, fill_component};
+use crate::fill::{FillError, FillOptions, FillResult, Filled, Route, check_fillable, fill_component};
 use crate::problem::Problem;
 use hexfill_embed::tutte_start;
 use hexfill_mesh::{Context, HexMesh, QuadSurface, VertexId};
@@ -57,6 +57,8 @@ pub(crate) fn fill_apart(problem: &Problem, options: &FillOptions, ctx: &Context
     for (c, (surface, vertices, _)) in problem.surface.split_components().into_iter().enumerate() {
         let mut part = Problem::from_surface(&format!("component {c} of {}", problem.name), surface);
         part.points = problem.points.as_ref().map(|p| vertices.iter().map(|v| p[v.index()]).collect());
+        // A whole with an even number of quads can have parts with odd numbers.
+        check_fillable(&part.surface)?;
         let mut made = fill_component(&part, &one, ctx)?;
         result.tried.extend(made.tried.drain(..).map(|t| format!("component {c}: {t}")));
         result.stop = made.stop;

@@ -197,14 +197,13 @@ pub fn fill(problem: &Problem, options: &FillOptions, ctx: &Context<'_>) -> Resu
     fill_component(problem, options, ctx)
 }
 
-/// Fills one component, or several at once where one lies in another.
+/// Fills one component, or several at once where one lies in another. The caller has checked that it is fillable.
 pub(crate) fn fill_component(
     problem: &Problem,
     options: &FillOptions,
     ctx: &Context<'_>,
 ) -> Result<FillResult, FillError> {
     let surface = &problem.surface;
-    check_fillable(surface)?;
     let small = surface.is_sphere() && surface.n_quads() <= MAX_QUADS;
     if options.strategy == Strategy::Atlas && !small {
         return Err(FillError::NotForStrategy {

@@ -58,13 +58,13 @@ pub fn place(
 ) -> Placed {
     let made = positions(filled, boundary, options, ctx);
     let refused = made.as_ref().err().map(ToString::to_string);
-    let (mut points, embedding) = made.unwrap_or_else(|_| {
+    let (points, embedding) = made.unwrap_or_else(|_| {
         let anywhere = boundary.first().copied().unwrap_or_default();
         let mut points = boundary.to_vec();
         points.resize(filled.mesh.n_vertices(), anywhere);
         (points, None)
     });
-    place_from(filled, boundary, &mut points, embedding, refused)
+    place_from(filled, boundary, points, embedding, refused)
 }
 
 /// Positions by the embedding, or to start from.
@@ -86,17 +86,15 @@ fn positions(
     })
 }
 
-/// Boundary positions put back, the better of two placements kept, every hex judged.
+/// The better of two placements kept, every hex judged, the boundary's positions put back.
 fn place_from(
     filled: &Filled,
     boundary: &[[f64; 3]],
-    points: &mut Vec<[f64; 3]>,
+    mut points: Vec<[f64; 3]>,
     embedding: Option<EmbedReport>,
     refused: Option<String>,
 ) -> Placed {
-    // The surface's points come back bit for bit, those that no quad uses included.
-    points[..boundary.len()].copy_from_slice(boundary);
-    let mut cells = judged_cells(filled, points);
+    let mut cells = judged_cells(filled, &points);
     if let (Some(_), Some(start)) = (&embedding, &filled.start)
         && !cells.iter().all(|c| c.valid)
     {
@@ -108,7 +106,9 @@ fn place_from(
             cells = before;
         }
     }
-    Placed { points: std::mem::take(points), cells, embedding, refused }
+    // The surface's points come back bit for bit, those that no quad uses included.
+    points[..boundary.len()].copy_from_slice(boundary);
+    Placed { points, cells, embedding, refused }
 }
 
 /// The judge's numbers on every hex. Every vertex id of a `HexMesh` has a position here, so every hex has a quality.
