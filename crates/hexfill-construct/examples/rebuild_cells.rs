@@ -5,7 +5,7 @@
 //! side facet blocked, until a hole is in the atlas with a ball that avoids the hole's blocked pairs.
 //! The environment variables `LEVELS`, `WIDTH` (states a class), `DEPTH` and `BEAM` set the effort.
 
-use hexfill_construct::{Cell, CellLibrary, Pattern, Role};
+use hexfill_construct::{Cell, CellChoice, CellLibrary, Pattern, Role};
 use hexfill_mesh::{Context, HexMesh, QuadSurface, surface_signature};
 use hexfill_search::{Atlas, Cavity, GrowOptions, Growth, apply, legal_flips};
 use std::collections::{BTreeMap, BTreeSet};
@@ -131,7 +131,7 @@ fn main() {
     }
     let atlas = Atlas::from_growth(&growth);
     for pattern in patterns {
-        let known = CellLibrary::built_in().n_hexes(&pattern).unwrap_or(0);
+        let known = CellLibrary::built_in(CellChoice::Fewest).n_hexes(&pattern).unwrap_or(0);
         let Some(cell) = search(&pattern, &atlas, setting("DEPTH", 10), setting("BEAM", 2000)) else {
             println!("{pattern}: nothing found (built in: {known})");
             continue;

@@ -1,7 +1,7 @@
 //! The octagonal spindle (or a surface signature) step by step: the tables of the book's page `construction`.
 
 use hexfill_construct::{
-    BallCore, CellLibrary, Options, RouteChoice, colouring, construct, core_triangles, light_sides,
+    BallCore, CellChoice, CellLibrary, Options, RouteChoice, colouring, construct, core_triangles, light_sides,
 };
 use hexfill_mesh::generate::octagonal_spindle;
 use hexfill_mesh::{Context, QuadId, parse_surface_signature};
@@ -35,7 +35,7 @@ fn main() {
         Ok(triangles) => println!("3-4 inner triangles: {} {triangles:?}", triangles.len()),
         Err(e) => return println!("{e}"),
     }
-    for cell in CellLibrary::built_in().cells() {
+    for cell in CellLibrary::built_in(CellChoice::Fewest).cells() {
         println!("  cell {}: {} hexes, {} points inside", cell.pattern, cell.hexes.len(), cell.n_interior());
     }
     for (route, core) in [

@@ -92,6 +92,10 @@ impl Cell {
         text
     }
 
+    fn file_name(&self) -> String {
+        format!("{}.cell", self.pattern)
+    }
+
     /// Number of points inside.
     pub fn n_interior(&self) -> usize {
         self.points.len() - self.n_boundary
@@ -172,6 +176,16 @@ pub struct PlacedCell {
     pub symmetry: Symmetry,
 }
 
+/// Which of the shipped cells to use where a pattern has two.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum CellChoice {
+    /// The ones with the fewest hexes: for the smallest connectivity.
+    #[default]
+    Fewest,
+    /// The ones that embed in the cube with planar sides that fit their neighbours': for coordinates.
+    Embeddable,
+}
+
 /// All cells, looked up by pattern.
 #[derive(Clone, Debug)]
 pub struct CellLibrary {
@@ -198,14 +212,22 @@ include!("cell_files.rs");
 
 impl CellLibrary {
     /// The cells shipped with the crate.
-    pub fn built_in() -> &'static Self {
-        static LIBRARY: OnceLock<CellLibrary> = OnceLock::new();
-        LIBRARY.get_or_init(|| {
-            let cells = CELL_FILES
-                .iter()
-                .map(|(name, text)| Cell::parse(text).unwrap_or_else(|e| unreachable!("cell file {name}: {e}")));
-            Self::completed(cells.collect())
-        })
+    pub fn built_in(choice: CellChoice) -> &'static Self {
+        static FEWEST: OnceLock<CellLibrary> = OnceLock::new();
+        static EMBEDDABLE: OnceLock<CellLibrary> = OnceLock::new();
+        let parse = |(name, text): &(&str, &str)| {
+            Cell::parse(text).unwrap_or_else(|e| unreachable!("cell file {name}: {e}"))
+        };
+        let fewest = || Self::completed(CELL_FILES.iter().map(parse).collect());
+        match choice {
+            CellChoice::Fewest => FEWEST.get_or_init(fewest),
+            CellChoice::Embeddable => EMBEDDABLE.get_or_init(|| {
+                let mut cells: Vec<Cell> = EMBEDDED_CELL_FILES.iter().map(parse).collect();
+                let rest = FEWEST.get_or_init(fewest).cells();
+                cells.extend(rest.iter().filter(|c| EMBEDDED_CELL_FILES.iter().all(|(name, _)| *name != c.file_name())).cloned());
+                Self::new(cells)
+            }),
+        }
     }
 
     /// A library of given cells; a cell that is not wall-safe is pillowed. Of two cells with one pattern the one
@@ -335,7 +357,7 @@ mod tests {
 
     #[test]
     fn every_cell_file_is_a_proper_wall_safe_filling_of_its_pattern() {
-        let library = CellLibrary::built_in();
+        let library = CellLibrary::built_in(CellChoice::Fewest);
         assert_eq!(library.cells().len(), Pattern::all_classes().len());
         for (cell, (name, text)) in library.cells().iter().zip(CELL_FILES) {
             assert_eq!(format!("{}.cell", cell.pattern), *name);
@@ -374,9 +396,28 @@ mod tests {
 
     #[test]
     fn every_pattern_has_a_cell() {
-        for p in Pattern::all_classes() {
-            let placed = CellLibrary::built_in().find(&p).unwrap();
-            check(&CellLibrary::built_in().cells()[placed.cell]);
+        for choice in [CellChoice::Fewest, CellChoice::Embeddable] {
+            let library = CellLibrary::built_in(choice);
+            for p in Pattern::all_classes() {
+                check(&library.cells()[library.find(&p).unwrap().cell]);
+            }
+        }
+    }
+
+    #[test]
+    fn embedded_cells_are_wall_safe_and_agree_with_the_template_on_their_sides() {
+        for (name, text) in EMBEDDED_CELL_FILES {
+            let cell = Cell::parse(text).unwrap();
+            assert_eq!(cell.file_name(), *name);
+            assert_eq!(Cell::parse(&cell.to_text()).as_ref(), Ok(&cell));
+            check(&cell);
+            let positions = cell.positions.as_ref().unwrap();
+            for k in 0..4 {
+                for role in cell.pattern.side_points(k) {
+                    let i = cell.points.iter().position(|&r| r == role).unwrap();
+                    assert_eq!(positions[i], crate::start::template_position(role), "{name}: {role}");
+                }
+            }
         }
     }
 }

@@ -13,3 +13,9 @@ const CELL_FILES: &[(&str, &str)] = &[
     ("ww-lhhh.cell", include_str!("../data/cells/ww-lhhh.cell")),
     ("ww-lllh.cell", include_str!("../data/cells/ww-lllh.cell")),
 ];
+
+// The same patterns by cells that embed in the cube: more hexes, positions in their files.
+const EMBEDDED_CELL_FILES: &[(&str, &str)] = &[
+    ("ww-lhhh.cell", include_str!("../data/cells/embedded/ww-lhhh.cell")),
+    ("ww-lllh.cell", include_str!("../data/cells/embedded/ww-lllh.cell")),
+];

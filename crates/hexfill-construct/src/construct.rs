@@ -2,7 +2,7 @@
 
 use crate::assemble::{count_cells, place_cells};
 use crate::ball::{BallCore, BallTets};
-use crate::cell::CellLibrary;
+use crate::cell::{CellChoice, CellLibrary};
 use crate::colouring::{all_black, colouring};
 use crate::error::ConstructError;
 use crate::handlebody::HandlebodyTets;
@@ -36,6 +36,8 @@ pub struct Options {
     /// Who makes the tetrahedra of the interior; without it a ball is coned, and anything else is cut along disks
     /// that positions tell (see [`crate::HandlebodyTets`]).
     pub tets: Option<Box<dyn InteriorTets>>,
+    /// Which of the built-in cells.
+    pub cells: CellChoice,
     /// Cells to use instead of the built-in ones.
     pub library: Option<CellLibrary>,
 }
@@ -45,6 +47,7 @@ impl std::fmt::Debug for Options {
         f.debug_struct("Options")
             .field("route", &self.route)
             .field("ball_core", &self.ball_core)
+            .field("cells", &self.cells)
             .field("tets", &self.tets.as_ref().map(|t| t.name()))
             .finish_non_exhaustive()
     }
@@ -97,7 +100,7 @@ pub fn construct(
     };
     let library = match &options.library {
         Some(library) => library,
-        None => CellLibrary::built_in(),
+        None => CellLibrary::built_in(options.cells),
     };
     stage("matching")?;
     let sides = light_sides(surface, ctx)?;
@@ -184,7 +187,7 @@ pub fn core_triangles(
         RouteChoice::Erickson => all_black(surface),
     };
     let sides = light_sides(surface, ctx)?;
-    Ok(Layer::new(surface, &colours, &sides, CellLibrary::built_in())?.triangles())
+    Ok(Layer::new(surface, &colours, &sides, CellLibrary::built_in(CellChoice::Fewest))?.triangles())
 }
 
 /// Per dart: the edge of the complex under it.

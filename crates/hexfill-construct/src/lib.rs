@@ -27,7 +27,7 @@ mod start;
 mod tets;
 
 pub use ball::{BallCore, BallTets};
-pub use cell::{Cell, CellLibrary, PlacedCell};
+pub use cell::{Cell, CellChoice, CellLibrary, PlacedCell};
 pub use colouring::{Colouring, all_black, colouring};
 pub use construct::{Construction, Options, RouteChoice, construct, core_triangles};
 pub use error::ConstructError;
