@@ -1,8 +1,10 @@
 //! `fill`: from a problem to verified meshes. Picks the strategy, and lets nothing out that the judge refused.
 
 use crate::components::{depths, fill_apart};
+use crate::geometry::boundary_points;
 use crate::problem::Problem;
 use hexfill_check::{Judged, Level, judge};
+use hexfill_construct::CellChoice;
 use hexfill_io::MeshData;
 use hexfill_mesh::{
     Context, HexMesh, ImproperPair, Offenders, QuadSurface, StopReason, hex_signature, improper_pairs, sheets,
@@ -63,6 +65,8 @@ pub struct FillOptions {
     pub inward_cavities: u64,
     /// Where the construction gets the tetrahedra of an interior that is not a ball.
     pub interior: InteriorFrom,
+    /// Which cells the construction uses where it has a choice: the ones with the fewest hexes do not embed.
+    pub cells: CellChoice,
 }
 
 impl Default for FillOptions {
@@ -77,6 +81,7 @@ impl Default for FillOptions {
             growth: GrowOptions::default(),
             inward_cavities: 1_000_000,
             interior: InteriorFrom::BuiltIn,
+            cells: CellChoice::Embeddable,
         }
     }
 }
@@ -325,8 +330,9 @@ fn construct(
         InteriorFrom::Tets(tets) => Some(Box::new(hexfill_construct::GivenTets::clone(tets))),
         InteriorFrom::Tetgen(program) => Some(Box::new(program.clone())),
     };
-    let how = hexfill_construct::Options { tets, ..hexfill_construct::Options::default() };
-    let made = match hexfill_construct::construct(&problem.surface, problem.points.as_deref(), &how, ctx) {
+    let how = hexfill_construct::Options { tets, cells: options.cells, ..hexfill_construct::Options::default() };
+    let points = boundary_points(problem);
+    let made = match hexfill_construct::construct(&problem.surface, points.as_deref(), &how, ctx) {
         Err(hexfill_construct::ConstructError::Stopped(reason)) => {
             result.stop = reason;
             result.tried.push("construction, stopped before the mesh was complete".to_owned());

@@ -5,7 +5,7 @@ use crate::console::Console;
 use crate::exit::Exit;
 use crate::files;
 use anyhow::bail;
-use hexfill::construct::{GivenTets, TetgenTets};
+use hexfill::construct::{CellChoice, GivenTets, TetgenTets};
 use hexfill::io::Format;
 use hexfill::search::{Atlas, GrowOptions};
 use hexfill::{
@@ -67,6 +67,10 @@ pub struct FillArgs {
     /// Call this TetGen program for the inside of surfaces that are not spheres.
     #[arg(long, value_name = "PROGRAM", num_args = 0..=1, default_missing_value = "tetgen")]
     tetgen: Option<PathBuf>,
+    /// Which cells the construction uses: those that embed, or those with the fewest hexes [default: fewest with --no-embed,
+    /// else embeddable].
+    #[arg(long, value_enum)]
+    cells: Option<CellsArg>,
     /// Do not embed: interior vertices get start positions, and geometry is not judged.
     #[arg(long)]
     no_embed: bool,
@@ -89,6 +93,14 @@ enum StrategyArg {
     Atlas,
     /// Construction only.
     Construct,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, Debug, clap::ValueEnum)]
+enum CellsArg {
+    /// Fewest hexes; coordinates cannot be valid.
+    Fewest,
+    /// Cells with valid coordinates of their own.
+    Embeddable,
 }
 
 #[derive(Serialize)]
@@ -148,6 +160,12 @@ pub fn run(args: &FillArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Res
         growth_log: args.growth_log.clone().or_else(|| own_log.clone()),
         inward_cavities: args.inward_cavities,
         interior: interior(args)?,
+        cells: match args.cells {
+            Some(CellsArg::Fewest) => CellChoice::Fewest,
+            Some(CellsArg::Embeddable) => CellChoice::Embeddable,
+            None if args.no_embed => CellChoice::Fewest,
+            None => CellChoice::Embeddable,
+        },
         growth: GrowOptions { cap: args.cap, width: args.width.max(1) },
     };
     let result = hexfill::fill(&problem, &options, ctx)?;
