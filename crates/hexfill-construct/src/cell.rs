@@ -215,16 +215,17 @@ impl CellLibrary {
     pub fn built_in(choice: CellChoice) -> &'static Self {
         static FEWEST: OnceLock<CellLibrary> = OnceLock::new();
         static EMBEDDABLE: OnceLock<CellLibrary> = OnceLock::new();
-        let parse = |(name, text): &(&str, &str)| {
-            Cell::parse(text).unwrap_or_else(|e| unreachable!("cell file {name}: {e}"))
-        };
+        let parse =
+            |(name, text): &(&str, &str)| Cell::parse(text).unwrap_or_else(|e| unreachable!("cell file {name}: {e}"));
         let fewest = || Self::completed(CELL_FILES.iter().map(parse).collect());
         match choice {
             CellChoice::Fewest => FEWEST.get_or_init(fewest),
             CellChoice::Embeddable => EMBEDDABLE.get_or_init(|| {
                 let mut cells: Vec<Cell> = EMBEDDED_CELL_FILES.iter().map(parse).collect();
                 let rest = FEWEST.get_or_init(fewest).cells();
-                cells.extend(rest.iter().filter(|c| EMBEDDED_CELL_FILES.iter().all(|(name, _)| *name != c.file_name())).cloned());
+                cells.extend(
+                    rest.iter().filter(|c| EMBEDDED_CELL_FILES.iter().all(|(name, _)| *name != c.file_name())).cloned(),
+                );
                 Self::new(cells)
             }),
         }

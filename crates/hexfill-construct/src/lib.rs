@@ -22,6 +22,8 @@ mod pattern;
 mod report;
 mod shell;
 mod sigma;
+#[cfg(test)]
+mod sigma_oracle;
 mod split;
 mod start;
 mod tets;

@@ -38,7 +38,8 @@ fn bad_meetings(cell: &Cell) -> usize {
 
 #[test]
 fn every_hex_meets_every_wall_in_a_face_of_the_wall() {
-    let cells = || [CellChoice::Fewest, CellChoice::Embeddable].into_iter().flat_map(|c| CellLibrary::built_in(c).cells());
+    let cells =
+        || [CellChoice::Fewest, CellChoice::Embeddable].into_iter().flat_map(|c| CellLibrary::built_in(c).cells());
     for cell in cells() {
         assert_eq!(bad_meetings(cell), 0, "{}", cell.pattern);
         for k in 0..4 {

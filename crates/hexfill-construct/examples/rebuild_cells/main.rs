@@ -1,0 +1,218 @@
+//! Finds the cells again: `rebuild_cells FOLDER [pattern ...]` writes `pattern.cell` for every filling found
+//! (all patterns by default) and prints its number of hexes beside that of the built-in cell.
+//!
+//! Balls grow outward from one cube by flips (`hexfill-search`), holes grow inward from the buffer cube with all pairs of each
+//! side facet blocked, until a hole is in the atlas with a ball that avoids the hole's blocked pairs. Per class of holes
+//! the smallest sets of blocked pairs are kept, none a subset of another (`WIDTH` of them), and per number of quads the
+//! `BEAM` holes with the fewest. `FREE=1` blocks nothing at first: a filling that is not wall-safe is pillowed when it is loaded.
+//! The environment variables `ATLAS` (a file of `hexfill atlas build`; else one is grown, `LEVELS` and `GROWTH_WIDTH`),
+//! `WIDTH`, `DEPTH`, `BEAM` and `CAP` (quads of a hole) set the effort.
+
+mod name;
+
+use hexfill_construct::{Cell, CellChoice, CellLibrary, Pattern, Role};
+use hexfill_mesh::{Context, HexMesh, QuadSurface};
+use hexfill_search::{Atlas, Cavity, GrowOptions, Growth, apply, legal_flips};
+use name::{Bits, is_subset, name};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+/// Quads an atlas ball may have.
+const ATLAS_CAP: usize = 24;
+
+/// What is left to fill, seen from the hexes already there (inside out).
+#[derive(Clone)]
+struct Hole {
+    cavity: Cavity,
+    /// Mesh vertex of each cavity vertex.
+    ids: Vec<u32>,
+    n_vertices: u32,
+    hexes: Vec<[u32; 8]>,
+}
+
+/// A hole one hex further that may be kept: (blocked pairs, their bits, parent, index of the flip).
+type Candidate = (u32, Bits, usize, usize);
+
+/// Per class: the sets of blocked pairs of its holes.
+type Fronts = HashMap<Vec<u8>, Vec<Bits>>;
+
+fn setting(name: &str, default: usize) -> usize {
+    std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default)
+}
+
+/// The same cavity from its other side, vertex numbers kept.
+fn mirror(cavity: &Cavity) -> Option<Cavity> {
+    let (mut other, _) = Cavity::from_surface(&cavity.to_surface().inverted())?;
+    for [a, b] in cavity.blocked_list() {
+        other.block(a, b);
+    }
+    Some(other)
+}
+
+fn roles_of(pattern: &Pattern) -> Vec<Role> {
+    let roles: BTreeSet<Role> = pattern.boundary().into_iter().flatten().collect();
+    roles.into_iter().collect()
+}
+
+/// The buffer cube inside out, with the pairs of each side that the side does not join blocked if `walls`.
+fn first_hole(pattern: &Pattern, roles: &[Role], walls: bool) -> Option<Hole> {
+    let index = |r: Role| roles.iter().position(|&x| x == r).unwrap_or(0) as u32;
+    let quads: Vec<[u32; 4]> = pattern.boundary().iter().map(|q| q.map(index)).collect();
+    let surface = QuadSurface::try_new(roles.len(), &quads).ok()?;
+    let (mut cavity, ids) = Cavity::from_surface(&surface.inverted())?;
+    let joined = |a: u32, b: u32| quads.iter().any(|q| q.contains(&a) && q.contains(&b));
+    for k in (0..4).filter(|_| walls) {
+        let points: Vec<u32> = pattern.side_points(k).into_iter().map(index).collect();
+        for (i, &a) in points.iter().enumerate() {
+            for &b in &points[..i] {
+                if !joined(a, b) {
+                    cavity.block(a as u8, b as u8);
+                }
+            }
+        }
+    }
+    Some(Hole { cavity, ids, n_vertices: roles.len() as u32, hexes: Vec::new() })
+}
+
+/// A mesh of fewer than `limit` hexes that fills the hole from the atlas.
+fn close(hole: &Hole, atlas: &Atlas, limit: usize) -> Option<(u32, Vec<[u32; 8]>)> {
+    if hole.cavity.n_quads() > ATLAS_CAP {
+        return None;
+    }
+    let most = limit.checked_sub(hole.hexes.len() + 1)?;
+    let inside = mirror(&hole.cavity)?;
+    let (ball, map, mirrored) = atlas.best_fit(&inside, most as u32)?;
+    let ids: Vec<u32> = map.iter().map(|&v| hole.ids[usize::from(v)]).collect();
+    let (mut hexes, fresh) = ball.hexes_in(&ids, mirrored, hole.n_vertices);
+    hexes.extend(&hole.hexes);
+    Some((hole.n_vertices + fresh, hexes))
+}
+
+/// The holes one hex further that no earlier one dominates.
+fn deeper(holes: &[Hole], fronts: &mut Fronts, [cap, width, beam]: [usize; 3]) -> Vec<Hole> {
+    let mut pending: BTreeMap<Vec<u8>, Vec<Candidate>> = BTreeMap::new();
+    for (parent, hole) in holes.iter().enumerate() {
+        for (i, placement) in legal_flips(&hole.cavity, cap).iter().enumerate() {
+            let (after, _) = apply(&hole.cavity, placement);
+            let (code, bits) = name(&after);
+            if !fronts.get(&code).is_some_and(|f| f.iter().any(|old| is_subset(old, &bits))) {
+                pending.entry(code).or_default().push((after.n_blocked(), bits, parent, i));
+            }
+        }
+    }
+    // Per number of quads, fewest blocked pairs first.
+    let mut kept: BTreeMap<usize, Vec<(u32, usize, usize)>> = BTreeMap::new();
+    for (code, mut candidates) in pending {
+        candidates.sort_unstable();
+        let n_quads = code.len() / 4;
+        let front = fronts.entry(code).or_default();
+        let fewest = front.iter().map(ones).min().unwrap_or(u32::MAX);
+        for (n_blocked, bits, parent, i) in candidates {
+            let enters = front.len() < width || n_blocked < fewest;
+            if enters && !front.iter().any(|old| is_subset(old, &bits)) {
+                front.push(bits);
+                kept.entry(n_quads).or_default().push((n_blocked, parent, i));
+            }
+        }
+    }
+    let mut next = Vec::new();
+    for (_, mut chosen) in kept {
+        chosen.sort_unstable();
+        for (_, parent, i) in chosen.into_iter().take(beam) {
+            let hole = &holes[parent];
+            let placement = &legal_flips(&hole.cavity, cap)[i];
+            let (after, before) = apply(&hole.cavity, placement);
+            let n = hole.cavity.n_vertices();
+            let id = |v: u8| {
+                let v = usize::from(v);
+                if v < n { hole.ids[v] } else { hole.n_vertices + (v - n) as u32 }
+            };
+            let new = placement.corners.iter().filter(|&&v| usize::from(v) >= n).count() as u32;
+            let mut hexes = hole.hexes.clone();
+            hexes.push(placement.corners.map(id));
+            let ids = before[..after.n_vertices()].iter().map(|&v| id(v)).collect();
+            next.push(Hole { cavity: after, ids, n_vertices: hole.n_vertices + new, hexes });
+        }
+    }
+    next
+}
+
+fn ones(bits: &Bits) -> u32 {
+    bits.iter().map(|w| w.count_ones()).sum()
+}
+
+/// The smallest filling met.
+fn search(pattern: &Pattern, atlas: &Atlas, walls: bool) -> Option<Cell> {
+    let roles = roles_of(pattern);
+    let mut holes = vec![first_hole(pattern, &roles, walls)?];
+    let mut best: Option<(u32, Vec<[u32; 8]>)> = None;
+    let mut fronts = Fronts::new();
+    let sizes = [setting("CAP", ATLAS_CAP), setting("WIDTH", 3), setting("BEAM", 1000)];
+    for depth in 0..=setting("DEPTH", 10) {
+        for hole in &holes {
+            let limit = best.as_ref().map_or(usize::MAX, |b| b.1.len());
+            best = close(hole, atlas, limit).or(best);
+        }
+        if std::env::var_os("VERBOSE").is_some() {
+            println!("  {pattern} {depth}: {} holes, best {:?}", holes.len(), best.as_ref().map(|b| b.1.len()));
+        }
+        holes = deeper(&holes, &mut fronts, sizes);
+    }
+    let (n_vertices, hexes) = best?;
+    HexMesh::try_new(n_vertices as usize, &hexes).ok()?;
+    let n_boundary = roles.len();
+    let mut points = roles;
+    points.extend((0..n_vertices as usize - n_boundary).map(|i| Role::Interior(i as u16)));
+    let hexes = hexes.iter().map(|h| h.map(|v| v as u16)).collect();
+    Some(Cell { pattern: *pattern, points, n_boundary, hexes, positions: None })
+}
+
+fn boundary(quads: Vec<[Role; 4]>) -> BTreeSet<[Role; 4]> {
+    let first = |q: &[Role; 4]| (0..4).min_by_key(|&i| q[i]).unwrap_or(0);
+    quads
+        .into_iter()
+        .map(|mut q| {
+            let at = first(&q);
+            q.rotate_left(at);
+            q
+        })
+        .collect()
+}
+
+fn atlas() -> Result<Atlas, String> {
+    if let Some(path) = std::env::var_os("ATLAS") {
+        return Atlas::read_path(path.as_ref()).map_err(|e| e.to_string());
+    }
+    let mut growth = Growth::new(GrowOptions { cap: ATLAS_CAP, width: setting("GROWTH_WIDTH", 3) as u32 });
+    while (growth.level() as usize) < setting("LEVELS", 30) && !growth.is_exhausted() {
+        growth.grow(&Context::default());
+    }
+    Ok(Atlas::from_growth(&growth))
+}
+
+fn main() {
+    let mut arguments = std::env::args().skip(1);
+    let Some(folder) = arguments.next() else { return println!("usage: rebuild_cells FOLDER [pattern ...]") };
+    let mut patterns: Vec<Pattern> = arguments.filter_map(|a| a.parse().ok()).collect();
+    if patterns.is_empty() {
+        patterns = Pattern::all_classes();
+    }
+    let atlas = match atlas() {
+        Ok(atlas) => atlas,
+        Err(e) => return println!("{e}"),
+    };
+    for pattern in patterns {
+        let known = CellLibrary::built_in(CellChoice::Fewest).n_hexes(&pattern).unwrap_or(0);
+        let Some(cell) = search(&pattern, &atlas, std::env::var_os("FREE").is_none()) else {
+            println!("{pattern}: nothing found (built in: {known})");
+            continue;
+        };
+        let right = boundary(cell.hex_boundary()) == boundary(pattern.boundary());
+        let safe = cell.unsafe_pairs().is_empty();
+        let n = cell.hexes.len() + if safe { 0 } else { pattern.boundary().len() };
+        println!("{pattern}: {n} hexes (built in: {known}), wall-safe by itself: {safe}, boundary right: {right}");
+        let path = std::path::Path::new(&folder).join(format!("{pattern}.cell"));
+        if right && let Err(e) = std::fs::write(&path, cell.to_text()) {
+            println!("{}: {e}", path.display());
+        }
+    }
+}

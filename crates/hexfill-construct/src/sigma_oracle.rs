@@ -1,0 +1,453 @@
+//! An oracle for Sigma, for tests: the whole cocycle system, dense, eliminated over GF(2).
+//!
+//! One unknown per edge of the tets. A triangle has an even number of cut edges; surface edges between black ends are cut, the
+//! others and the diagonals are not. Nothing is shared with `sigma.rs`: no forest, no classes, no symbols.
+//! The complexes: balls, tori of all parities (straight and twisted), chains of tori glued along quads (genus 2 to 4),
+//! balls with cavities, and several of these apart.
+
+use crate::ball::{BallCore, BallTets};
+use crate::colouring::{Colouring, all_black, colouring};
+use crate::error::ConstructError;
+use crate::handlebody::HandlebodyTets;
+use crate::shell::ShellTets;
+use crate::sigma::sigma;
+use crate::tets::{InteriorTets, TetComplex, TetRequest};
+use hexfill_mesh::generate::{Random, random_sphere, torus};
+use hexfill_mesh::{Context, Dart, Edge, QuadId, QuadSurface, is_proper};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// A row of bits; the last one is the right side.
+type Row = Vec<u64>;
+
+fn set(row: &mut Row, bit: usize) {
+    row[bit / 64] ^= 1 << (bit % 64);
+}
+
+fn has(row: &Row, bit: usize) -> bool {
+    row[bit / 64] >> (bit % 64) & 1 == 1
+}
+
+/// Whether `rows` (each `n` unknowns and a right side) have a solution.
+fn solvable(mut rows: Vec<Row>, n: usize) -> bool {
+    let mut done = 0;
+    for bit in 0..n {
+        let Some(pivot) = (done..rows.len()).find(|&r| has(&rows[r], bit)) else { continue };
+        rows.swap(done, pivot);
+        let head = rows[done].clone();
+        for row in rows[done + 1..].iter_mut().filter(|r| has(r, bit)) {
+            row.iter_mut().zip(&head).for_each(|(x, y)| *x ^= y);
+        }
+        done += 1;
+    }
+    rows[done..].iter().all(|r| !has(r, n))
+}
+
+/// A solid: its surface, the colours, the triangles (two a quad), tets, and the edge of the tets under each dart.
+#[derive(Clone)]
+struct Solid {
+    surface: QuadSurface,
+    colours: Colouring,
+    triangles: Vec<[u32; 3]>,
+    complex: TetComplex,
+}
+
+/// First corner of the diagonal of each quad, then its triangles: between black corners.
+fn triangles(surface: &QuadSurface, colours: &Colouring) -> Vec<[u32; 3]> {
+    let two = |q: [hexfill_mesh::VertexId; 4]| {
+        let turn = usize::from(colours.white[q[0].index()] || colours.white[q[2].index()]);
+        let c = |k: usize| q[(k + turn) % 4].0;
+        [[c(0), c(1), c(2)], [c(2), c(3), c(0)]]
+    };
+    (0..surface.n_quads()).flat_map(|q| two(surface.quad(QuadId::new(q)))).collect()
+}
+
+impl Solid {
+    fn new(
+        surface: &QuadSurface,
+        colours: Colouring,
+        points: Option<&[[f64; 3]]>,
+        maker: impl Fn(&TetRequest<'_>) -> TetComplex,
+    ) -> Self {
+        let triangles = triangles(surface, &colours);
+        let request = TetRequest { n_vertices: surface.n_vertices(), triangles: &triangles, points };
+        let complex = maker(&request);
+        Self { surface: surface.clone(), colours, triangles, complex }
+    }
+
+    /// `None` if the positions are those of a surface that meets itself (a torus twisted too much for its few quads).
+    fn handlebody(surface: &QuadSurface, colours: Colouring, points: &[[f64; 3]]) -> Option<Self> {
+        let triangles = triangles(surface, &colours);
+        let request = TetRequest { n_vertices: surface.n_vertices(), triangles: &triangles, points: Some(points) };
+        match HandlebodyTets.fill(&request, &Context::default()) {
+            Ok(complex) => Some(Self { surface: surface.clone(), colours, triangles, complex }),
+            Err(ConstructError::InteriorNeeded { reason, .. }) if reason.contains("meets itself") => None,
+            Err(other) => panic!("{other}"),
+        }
+    }
+
+    /// Per triangle its face, and per dart of the surface the edge of the tets below it.
+    fn boundary(&self) -> (Vec<u32>, Vec<u32>) {
+        let request = TetRequest { n_vertices: self.surface.n_vertices(), triangles: &self.triangles, points: None };
+        let faces = self.complex.match_boundary(&request).unwrap();
+        let all = self.complex.faces();
+        let mut edge = vec![u32::MAX; 4 * self.surface.n_quads()];
+        for (t, &f) in faces.iter().enumerate() {
+            let (corners, edges) = all[f as usize];
+            for k in 0..4 {
+                let d = Dart::new(QuadId::new(t / 2), k);
+                let (a, b) = (self.surface.origin(d).0, self.surface.target(d).0);
+                if let Some(i) = (0..3).find(|&i| {
+                    let rest = [corners[(i + 1) % 3], corners[(i + 2) % 3]];
+                    rest == [a, b] || rest == [b, a]
+                }) {
+                    edge[d.index()] = edges[i];
+                }
+            }
+        }
+        assert!(edge.iter().all(|&e| e != u32::MAX));
+        (faces, edge)
+    }
+
+    /// What Sigma has to be on the boundary: cut or not, per boundary edge of the tets.
+    fn prescribed(&self) -> BTreeMap<u32, bool> {
+        let (faces, edge) = self.boundary();
+        let mut wanted = BTreeMap::new();
+        for d in self.surface.darts() {
+            let black = |v: hexfill_mesh::VertexId| !self.colours.white[v.index()];
+            wanted.insert(edge[d.index()], black(self.surface.origin(d)) && black(self.surface.target(d)));
+        }
+        let all = self.complex.faces();
+        for f in faces {
+            for e in all[f as usize].1 {
+                wanted.entry(e).or_insert(false);
+            }
+        }
+        wanted
+    }
+
+    fn is_solvable(&self) -> bool {
+        let n = self.complex.n_edges;
+        let empty = || vec![0u64; n / 64 + 1];
+        let mut rows = Vec::new();
+        for (_, edges) in self.complex.faces() {
+            let mut row = empty();
+            edges.iter().for_each(|&e| set(&mut row, e as usize));
+            rows.push(row);
+        }
+        for (e, cut) in self.prescribed() {
+            let mut row = empty();
+            set(&mut row, e as usize);
+            if cut {
+                set(&mut row, n);
+            }
+            rows.push(row);
+        }
+        solvable(rows, n)
+    }
+
+    /// Whether a set of surface edges is the boundary of a set of triangles of the tets.
+    fn bounds(&self, cycle: &[Edge]) -> bool {
+        let (_, edge) = self.boundary();
+        let inside: BTreeSet<Edge> = cycle.iter().copied().collect();
+        let n = self.complex.n_faces;
+        let mut rows = vec![vec![0u64; n / 64 + 1]; self.complex.n_edges];
+        for (f, (_, edges)) in self.complex.faces().into_iter().enumerate() {
+            edges.iter().for_each(|&e| set(&mut rows[e as usize], f));
+        }
+        for d in self.surface.darts().filter(|&d| d < self.surface.twin(d)) {
+            if inside.contains(&Edge::new(self.surface.origin(d), self.surface.target(d))) {
+                set(&mut rows[edge[d.index()] as usize], n);
+            }
+        }
+        solvable(rows, n)
+    }
+
+    /// Compares `sigma` with the oracle. Returns whether a Sigma exists.
+    fn check(&self) -> bool {
+        let solvable = self.is_solvable();
+        let (_, edge) = self.boundary();
+        match sigma(&self.surface, &self.colours, &self.complex, &edge) {
+            Ok(cut) => {
+                assert!(solvable, "Sigma found although there is none");
+                for (_, edges) in self.complex.faces() {
+                    assert_eq!(edges.iter().filter(|&&e| cut[e as usize]).count() % 2, 0);
+                }
+                for (e, wanted) in self.prescribed() {
+                    assert_eq!(cut[e as usize], wanted);
+                }
+            }
+            Err(ConstructError::OddCycleBounds { cycle, edges }) => {
+                assert!(!solvable, "Sigma refused although there is one");
+                assert_eq!(edges.count, cycle.len());
+                assert_eq!(cycle.len() % 2, 1);
+                let all: BTreeSet<Edge> =
+                    self.surface.darts().map(|d| Edge::new(self.surface.origin(d), self.surface.target(d))).collect();
+                let mut degree: BTreeMap<_, usize> = BTreeMap::new();
+                for e in &cycle {
+                    assert!(all.contains(e));
+                    *degree.entry(e.0).or_default() += 1;
+                    *degree.entry(e.1).or_default() += 1;
+                }
+                assert!(degree.values().all(|d| d % 2 == 0));
+                assert!(self.bounds(&cycle), "the certificate does not bound");
+            }
+            Err(other) => panic!("{other}"),
+        }
+        solvable
+    }
+
+    /// This solid and another: apart, or glued along the first quad of the other and the last of this one.
+    fn with(&self, other: &Self, glue: bool) -> Self {
+        let shift = self.complex.n_vertices as u32;
+        // Vertices: surface vertices of both must come first, so everything is renumbered by first use.
+        let last = self.surface.n_quads() - 1;
+        let (a, b) = (self.surface.quad(QuadId::new(last)), other.surface.quad(QuadId::new(0)));
+        let mut same: BTreeMap<u32, u32> = BTreeMap::new();
+        let skip = usize::from(glue);
+        if glue {
+            // Facing each other: the order is turned round, the diagonals (corners 0 and 2) coincide.
+            for (i, j) in [(0, 0), (1, 3), (2, 2), (3, 1)] {
+                same.insert(b[i].0 + shift, a[j].0);
+            }
+        }
+        let vertex = |v: u32| *same.get(&(v + shift)).unwrap_or(&(v + shift));
+        let quads: Vec<[u32; 4]> = self.surface.quads()[..=last - skip]
+            .iter()
+            .map(|q| q.map(|v| v.0))
+            .chain(other.surface.quads()[skip..].iter().map(|q| q.map(|v| vertex(v.0))))
+            .collect();
+        let mut number: BTreeMap<u32, u32> = BTreeMap::new();
+        for &v in quads.iter().flatten() {
+            let next = number.len() as u32;
+            number.entry(v).or_insert(next);
+        }
+        let n_surface = number.len();
+        for tet in &self.complex.tets {
+            for &v in tet {
+                let next = number.len() as u32;
+                number.entry(v).or_insert(next);
+            }
+        }
+        for tet in &other.complex.tets {
+            for &v in tet {
+                let next = number.len() as u32;
+                number.entry(vertex(v)).or_insert(next);
+            }
+        }
+        let quads: Vec<[u32; 4]> = quads.iter().map(|q| q.map(|v| number[&v])).collect();
+        let surface = QuadSurface::try_new(n_surface, &quads).unwrap();
+        // Edges and faces of the other solid, those of the glued quad identified by their vertices.
+        let (mut edges, mut faces) = (BTreeMap::new(), BTreeMap::new());
+        if glue {
+            let (mine, _) = self.boundary();
+            let (theirs, _) = other.boundary();
+            let (f1, f2) = (self.complex.faces(), other.complex.faces());
+            let sorted = |mut x: Vec<u32>| {
+                x.sort_unstable();
+                x
+            };
+            for t2 in theirs.iter().take(2) {
+                for t1 in &mine[2 * last..] {
+                    let (c1, e1) = f1[*t1 as usize];
+                    let (c2, e2) = f2[*t2 as usize];
+                    if sorted(c1.to_vec()) == sorted(c2.map(vertex).to_vec()) {
+                        faces.insert(*t2, *t1);
+                        for i in 0..3 {
+                            let j = (0..3).find(|&j| c1[j] == vertex(c2[i])).unwrap();
+                            edges.insert(e2[i], e1[j]);
+                        }
+                    }
+                }
+            }
+            assert_eq!((faces.len(), edges.len()), (2, 5));
+        }
+        let edge = |e: u32| *edges.get(&e).unwrap_or(&(e + self.complex.n_edges as u32));
+        let face = |f: u32| *faces.get(&f).unwrap_or(&(f + self.complex.n_faces as u32));
+        let mut complex = TetComplex {
+            n_vertices: number.len(),
+            tets: self.complex.tets.iter().map(|t| t.map(|v| number[&v])).collect(),
+            tet_edges: self.complex.tet_edges.clone(),
+            tet_faces: self.complex.tet_faces.clone(),
+            points: None,
+            ..TetComplex::default()
+        };
+        complex.tets.extend(other.complex.tets.iter().map(|t| t.map(|v| number[&vertex(v)])));
+        complex.tet_edges.extend(other.complex.tet_edges.iter().map(|t| t.map(edge)));
+        complex.tet_faces.extend(other.complex.tet_faces.iter().map(|t| t.map(face)));
+        // Ids without gaps.
+        let dense = |all: Vec<u32>| -> BTreeMap<u32, u32> {
+            let used: BTreeSet<u32> = all.into_iter().collect();
+            used.into_iter().enumerate().map(|(i, e)| (e, i as u32)).collect()
+        };
+        let edges = dense(complex.tet_edges.iter().flatten().copied().collect());
+        let faces = dense(complex.tet_faces.iter().flatten().copied().collect());
+        complex.tet_edges.iter_mut().flatten().for_each(|e| *e = edges[e]);
+        complex.tet_faces.iter_mut().flatten().for_each(|f| *f = faces[f]);
+        complex.n_edges = edges.len();
+        complex.n_faces = faces.len();
+        let colours = all_black(&surface);
+        let triangles = triangles(&surface, &colours);
+        Self { surface, colours, triangles, complex }
+    }
+}
+
+/// Positions of `torus(n, m, shift)`: index `i` runs round the tube or round the axis.
+fn torus_points(n: u32, m: u32, shift: u32, i_is_tube: bool) -> Vec<[f64; 3]> {
+    let turn = std::f64::consts::TAU;
+    let (nf, mf) = (f64::from(n), f64::from(m));
+    (0..m)
+        .flat_map(|j| (0..n).map(move |i| (f64::from(i), f64::from(j))))
+        .map(|(i, j)| {
+            // Row m is row 0 moved by the shift.
+            let a = turn * (i + f64::from(shift) * j / mf) / nf;
+            let b = turn * j / mf;
+            let (tube, axis) = if i_is_tube { (a, b) } else { (b, a) };
+            let r = 3.0 + tube.cos();
+            [r * axis.cos(), r * axis.sin(), tube.sin()]
+        })
+        .collect()
+}
+
+fn outward(surface: QuadSurface, points: &[[f64; 3]]) -> QuadSurface {
+    let mut volume = 0.0;
+    for q in surface.quads() {
+        let p = q.map(|v| points[v.index()]);
+        for [a, b, c] in [[p[0], p[1], p[2]], [p[0], p[2], p[3]]] {
+            volume += a[0] * (b[1] * c[2] - b[2] * c[1])
+                + a[1] * (b[2] * c[0] - b[0] * c[2])
+                + a[2] * (b[0] * c[1] - b[1] * c[0]);
+        }
+    }
+    if volume > 0.0 { surface } else { surface.inverted() }
+}
+
+fn torus_solid(n: u32, m: u32, shift: u32, i_is_tube: bool, black: bool) -> Option<Solid> {
+    let points = torus_points(n, m, shift, i_is_tube);
+    let surface = outward(torus(n, m, shift).unwrap(), &points);
+    let colours = if black { all_black(&surface) } else { colouring(&surface) };
+    Solid::handlebody(&surface, colours, &points)
+}
+
+#[test]
+fn tori_straight_and_twisted() {
+    let (mut yes, mut no, mut twisted) = (0, 0, 0);
+    for n in 3..=6 {
+        for m in 3..=7 {
+            for shift in 0..=n / 2 {
+                for i_is_tube in [true, false] {
+                    // Where quads share too much, the triangles below would as well: refused long before Sigma.
+                    if !i_is_tube && shift > 0 || !is_proper(&torus(n, m, shift).unwrap()) {
+                        continue;
+                    }
+                    for black in [true, false] {
+                        let Some(solid) = torus_solid(n, m, shift, i_is_tube, black) else {
+                            assert!(shift > 0);
+                            continue;
+                        };
+                        twisted += usize::from(shift > 0);
+                        let exists = solid.check();
+                        assert_eq!(exists, (if i_is_tube { n } else { m }) % 2 == 0, "{n} {m} {shift} {i_is_tube}");
+                        if exists { yes += 1 } else { no += 1 }
+                    }
+                }
+            }
+        }
+    }
+    println!("tori: {yes} with Sigma, {no} without, {twisted} of them twisted");
+    assert!(yes > 60 && no > 60 && twisted > 20, "{yes} {no} {twisted}");
+}
+
+#[test]
+fn balls() {
+    for i in 0..12u64 {
+        let surface = random_sphere(8 + 2 * (i as usize % 9), i).unwrap();
+        for colours in [all_black(&surface), colouring(&surface)] {
+            for core in [BallCore::Centred, BallCore::Fewest] {
+                let solid = Solid::new(&surface, colours.clone(), None, |r| {
+                    BallTets { surface: &surface, colouring: &colours, core }.fill(r, &Context::default()).unwrap()
+                });
+                assert!(solid.check());
+            }
+        }
+    }
+}
+
+/// The boundary of the filled cells of a grid, with positions (numbered as the generator does: by first use).
+fn voxels(size: [usize; 3], filled: impl Fn([usize; 3]) -> bool) -> (QuadSurface, Vec<[f64; 3]>) {
+    use hexfill_mesh::cube::{FACETS, POSITIONS};
+    let inside = |p: [i64; 3]| (0..3).all(|k| (0..size[k] as i64).contains(&p[k])) && filled(p.map(|x| x as usize));
+    let mut points: Vec<[f64; 3]> = Vec::new();
+    for z in 0..size[2] as i64 {
+        for y in 0..size[1] as i64 {
+            for x in (0..size[0] as i64).filter(|&x| inside([x, y, z])) {
+                for (f, facet) in FACETS.iter().enumerate() {
+                    let mut beside = [x, y, z];
+                    beside[f / 2] += if f % 2 == 0 { -1 } else { 1 };
+                    for k in facet.iter().filter(|_| !inside(beside)) {
+                        let p = POSITIONS[*k];
+                        let p = [x as f64 + f64::from(p[0]), y as f64 + f64::from(p[1]), z as f64 + f64::from(p[2])];
+                        if !points.contains(&p) {
+                            points.push(p);
+                        }
+                    }
+                }
+            }
+        }
+    }
+    let surface = hexfill_mesh::generate::voxel_surface(size, filled).unwrap();
+    assert_eq!(points.len(), surface.n_vertices());
+    (surface, points)
+}
+
+/// A box with single cells taken out: a ball with cavities.
+fn hollow(holes: &[[usize; 3]]) -> Solid {
+    let (surface, points) = voxels([3, 3, 5], |p| !holes.contains(&p));
+    assert_eq!(surface.n_components(), holes.len() + 1);
+    let colours = all_black(&surface);
+    Solid::new(&surface, colours, Some(&points), |r| ShellTets.fill(r, &Context::default()).unwrap())
+}
+
+#[test]
+fn plates_with_holes_and_balls_with_cavities() {
+    for genus in 1..=3 {
+        let (surface, points) = voxels([2 * genus + 1, 3, 1], |p| !(p[0] % 2 == 1 && p[1] == 1));
+        assert_eq!(surface.genus(), genus as u64);
+        assert!(Solid::handlebody(&surface, all_black(&surface), &points).unwrap().check());
+    }
+    assert!(hollow(&[[1, 1, 1]]).check());
+    assert!(hollow(&[[1, 1, 1], [1, 1, 3]]).check());
+}
+
+#[test]
+fn sums_of_solids_with_genus_cavities_and_components() {
+    let mut random = Random::new(7);
+    let (mut yes, mut no) = (0, 0);
+    let tori: Vec<(Solid, bool)> = [(3, 4), (4, 3), (4, 4), (5, 4), (4, 5), (3, 3), (5, 3), (3, 5)]
+        .into_iter()
+        .flat_map(|(n, m)| [(n, m, true), (n, m, false)])
+        .map(|(n, m, i_is_tube)| {
+            (torus_solid(n, m, 0, i_is_tube, true).unwrap(), (if i_is_tube { n } else { m }) % 2 == 0)
+        })
+        .collect();
+    let shells = [hollow(&[[1, 1, 1]]), hollow(&[[1, 1, 1], [1, 1, 3]])];
+    for _ in 0..60 {
+        let first = random.below(tori.len());
+        let (mut solid, mut exists) = tori[first].clone();
+        for _ in 0..random.below(4) {
+            let glue = random.below(3) > 0;
+            let (next, good) = match random.below(10) {
+                0..=7 => {
+                    let (t, good) = &tori[random.below(tori.len())];
+                    (t, *good)
+                }
+                k => (&shells[k - 8], true),
+            };
+            solid = solid.with(next, glue);
+            exists &= good;
+        }
+        assert_eq!(solid.check(), exists);
+        if exists { yes += 1 } else { no += 1 }
+    }
+    println!("sums: {yes} with Sigma, {no} without");
+    assert!(yes > 10 && no > 10, "{yes} {no}");
+}
