@@ -2,9 +2,9 @@
 //!
 //! Usage: `embed_json FILE [untangle-only|scaled-jacobian|balanced] [starts] [seed]`; the file has `hexes` (8 indices each),
 //! `boundary_points` (for the first vertices) and, if wanted, `start` (a point for every vertex).
-//! With `HEXFILL_OUT=PATH` the points are written there as JSON.
+//! With `HEXFILL_OUT=PATH` the points are written there as JSON; with `HEXFILL_STARS=1` all star bounds are printed first.
 
-use hexfill_embed::{Objective, Options, embed};
+use hexfill_embed::{Objective, Options, embed, star_bounds};
 use hexfill_mesh::{Context, HexMesh};
 use serde::Deserialize;
 
@@ -30,6 +30,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let progress = |p: &hexfill_mesh::Progress| eprintln!("{} {} {}", p.stage, p.done, p.message);
     let verbose = std::env::var_os("HEXFILL_VERBOSE").is_some();
     let context = Context { seed, progress: if verbose { Some(&progress) } else { None }, ..Context::default() };
+    if std::env::var_os("HEXFILL_STARS").is_some() {
+        for star in star_bounds(&mesh, &input.boundary_points)? {
+            eprintln!("{} at most {:.6}, attained {:.6}", star.vertex, star.bound, star.attained);
+        }
+    }
     let before = std::time::Instant::now();
     let done = embed(&mesh, &input.boundary_points, input.start.as_deref(), &options, &context)?;
     eprintln!("{:.3} s", before.elapsed().as_secs_f64());

@@ -11,11 +11,12 @@ use crate::local;
 use crate::maxmin::{self, Goal};
 use crate::measure::log_condition;
 use crate::problem::Problem;
+use crate::raise;
 use crate::random::Random;
-use crate::report::{CellQuality, EmbedReport, Embedding, Objective, Options};
-use crate::star::{self, StarBound};
+use crate::report::{CellQuality, EmbedReport, Embedding, Objective, Options, is_impossible};
+use crate::star::{self, Star, StarBound};
 use crate::tutte;
-use crate::untangle::bad_cells;
+use crate::untangle::{UntangleLimits, bad_cells, untangle};
 use crate::vector::{Vector, norm, sub};
 use hexfill_mesh::cube::{EDGES, POSITIONS};
 use hexfill_mesh::{Context, HexId, HexMesh, Offenders, StopReason, VertexId};
@@ -66,7 +67,8 @@ pub fn tutte_start(mesh: &HexMesh, boundary_points: &[[f64; 3]]) -> Result<Vec<[
     Ok(normal.restore(&points))
 }
 
-/// The vertex-star upper bounds of all boundary vertices with a corner that has at most one free edge, ascending by vertex.
+/// The vertex-star upper bounds of all boundary vertices, ascending by vertex. All count the corners with at most one free edge;
+/// those that decide the smallest bound count the others, too (branch and bound over the directions of the free edges).
 ///
 /// The worst scaled Jacobian of any embedding with this boundary is at most the smallest of them.
 ///
@@ -74,7 +76,11 @@ pub fn tutte_start(mesh: &HexMesh, boundary_points: &[[f64; 3]]) -> Result<Vec<[
 /// As [`embed`].
 pub fn star_bounds(mesh: &HexMesh, boundary_points: &[[f64; 3]]) -> Result<Vec<StarBound>, EmbedError> {
     let normal = Normal::new(mesh, boundary_points, None)?;
-    Ok(star::bounds(&normal.problem, &normal.points))
+    let mut points = normal.points.clone();
+    tutte::place(&normal.problem, &mut points, 0.0, &mut Random::new(0, 0));
+    let mut stars = star::bounds(&normal.problem, &normal.points);
+    star::refine(&mut stars, &points, &Context::default());
+    Ok(stars.into_iter().map(|s| s.bound).collect())
 }
 
 /// The problem in normal coordinates, and the way back.
@@ -154,10 +160,7 @@ impl Normal {
 
     fn run(&self, mesh: &HexMesh, start: Option<&[Vector]>, options: &Options, context: &Context<'_>) -> Embedding {
         let problem = &self.problem;
-        let mut stars = star::bounds(problem, &self.points);
-        stars.sort_by(|a, b| a.bound.total_cmp(&b.bound).then(a.vertex.cmp(&b.vertex)));
-        let upper_bound = stars.first().map_or(1.0, |s| s.bound).min(1.0);
-        stars.truncate(10);
+        let stars = star::bounds(problem, &self.points);
         let start: Option<Vec<Vector>> = start.map(|s| {
             let mut points = self.points.clone();
             for &v in &problem.free {
@@ -165,8 +168,21 @@ impl Normal {
             }
             points
         });
-        let search = Search { normal: self, start: start.as_deref(), upper_bound, options };
+        let upper_bound = least_bound(&stars);
+        let mut search = Search { normal: self, start: start.as_deref(), stars, refined: false, upper_bound, options };
         let outcome = search.best(context);
+        if outcome.valid_starts == 0 || options.objective != Objective::UntangleOnly {
+            search.refine(&outcome.points, context);
+        }
+        let mut upper_bound = search.upper_bound;
+        if outcome.value > upper_bound + 1e-9 {
+            // Only a surface that crosses itself can beat its angles.
+            search.stars.iter_mut().for_each(|s| s.bound.bound = s.by_direction);
+            upper_bound = least_bound(&search.stars);
+        }
+        let mut stars: Vec<StarBound> = search.stars.iter().map(|s| s.bound).collect();
+        stars.sort_by(|a, b| a.bound.total_cmp(&b.bound).then(a.vertex.cmp(&b.vertex)));
+        stars.truncate(10);
         let points = self.restore(&outcome.points);
         let judged: Vec<Vector> = points.iter().map(|&p| normalise(p, self.centre, self.scale)).collect();
         let mut cells: Vec<(f64, f64, f64)> = vec![(0.0, 0.0, 0.0); problem.hexes.len()];
@@ -217,9 +233,17 @@ fn normalise(p: Vector, centre: Vector, scale: f64) -> Vector {
     std::array::from_fn(|k| 2.0 * ((0.5 * p[k] - 0.5 * centre[k]) / scale))
 }
 
+/// The least bound of any star, at most 1.
+fn least_bound(stars: &[Star]) -> f64 {
+    stars.iter().map(|s| s.bound.bound).fold(1.0, f64::min)
+}
+
 struct Search<'a> {
     normal: &'a Normal,
     start: Option<&'a [Vector]>,
+    stars: Vec<Star>,
+    /// Whether the stars count corners with several free edges.
+    refined: bool,
     upper_bound: f64,
     options: &'a Options,
 }
@@ -238,6 +262,8 @@ struct Candidate {
 
 struct Outcome {
     points: Vec<Vector>,
+    /// The worst scaled Jacobian.
+    value: f64,
     starts: u32,
     valid_starts: u32,
     best_start: u32,
@@ -245,13 +271,22 @@ struct Outcome {
 }
 
 impl Search<'_> {
-    fn best(&self, context: &Context<'_>) -> Outcome {
+    /// Sharpens the star bounds, once.
+    fn refine(&mut self, hint: &[Vector], context: &Context<'_>) {
+        if !std::mem::replace(&mut self.refined, true) {
+            star::refine(&mut self.stars, hint, context);
+            self.upper_bound = least_bound(&self.stars);
+        }
+    }
+
+    fn best(&mut self, context: &Context<'_>) -> Outcome {
         let n_hexes = self.normal.problem.hexes.len();
         let first_valid_is_enough =
             self.options.objective == Objective::UntangleOnly || self.options.starts == 0 && n_hexes > 400;
         let starts = match (self.options.starts, n_hexes) {
             (0, 0..=100) => 8,
-            (0, _) => 4,
+            (0, 101..=5000) => 4,
+            (0, _) => 2,
             (n, _) => n,
         };
         let mut found: Vec<Candidate> = Vec::new();
@@ -274,6 +309,14 @@ impl Search<'_> {
             if valid && (first_valid_is_enough || self.is_optimal(best)) {
                 break;
             }
+            if !valid {
+                // Where no placement is valid, one start is as good as many.
+                let hint = found[0].points.clone();
+                self.refine(&hint, context);
+                if is_impossible(self.upper_bound) {
+                    break;
+                }
+            }
         }
         let starts = found.len() as u32;
         let valid_starts = found.iter().filter(|c| c.n_bad == 0).count() as u32;
@@ -282,7 +325,7 @@ impl Search<'_> {
             stop = self.balance(&mut found, context);
         }
         let best = found.swap_remove(0);
-        Outcome { points: best.points, starts, valid_starts, best_start: best.number, stop }
+        Outcome { points: best.points, value: best.value, starts, valid_starts, best_start: best.number, stop }
     }
 
     fn is_optimal(&self, value: f64) -> bool {
@@ -309,29 +352,64 @@ impl Search<'_> {
         } else {
             (bad, stopped) = local::untangle_whole(problem, &mut points, context);
         }
+        if let Some(given) = self.start.filter(|_| number == 0 && !bad.is_empty()) {
+            // A start that could not be untangled comes back no worse than it was.
+            let rank = |points: &[Vector], bad: usize| (bad, -maxmin::judge(problem, points, 1.0).worst);
+            let before = bad_cells(problem, given);
+            let (old, new) = (rank(given, before.len()), rank(&points, bad.len()));
+            if old.0 < new.0 || old.0 == new.0 && old.1 <= new.1 {
+                points.copy_from_slice(given);
+                bad = before;
+            }
+        }
         let climbs = self.options.objective != Objective::UntangleOnly && bad.is_empty();
         let target = self.upper_bound - 1e-9;
-        let mut value = f64::NEG_INFINITY;
         let untangled = points.clone();
         if climbs && stopped.is_none() {
-            if n_hexes <= self.options.whole_limit {
-                let limits = maxmin::Limits { iterations: self.options.programs, band: 0.3, tolerance: 1e-9 };
-                let goal = Goal::ScaledJacobian { target };
-                let climbed = maxmin::climb(problem, &mut points, goal, limits, context);
-                stopped = climbed.stopped;
-                value = climbed.scaled_jacobian;
-            } else {
-                // A round judges every cell; very large meshes get fewer.
-                let share = if n_hexes > self.options.local_limit { 8 } else { 1 };
-                let rounds = self.options.programs / share;
-                stopped = local::climb_worst(problem, &mut points, target, rounds, context);
-            }
+            stopped = self.improve(&mut points, target, context);
             bad = bad_cells(problem, &points);
         }
-        if value == f64::NEG_INFINITY {
-            value = maxmin::judge(problem, &points, 1.0).worst;
-        }
+        let value = maxmin::judge(problem, &points, 1.0).worst;
         Candidate { number, points, untangled, n_bad: bad.len(), value, stopped }
+    }
+
+    /// Raises the worst scaled Jacobian of valid cells. Small meshes go by linear programs alone, which follow thin
+    /// ridges best; larger ones by barriers first, from the start as it is and from a smoothed one, as a program's cost grows
+    /// faster than the mesh.
+    fn improve(&self, points: &mut Vec<Vector>, target: f64, context: &Context<'_>) -> Option<StopReason> {
+        /// Meshes of so many hexes are left to the programs.
+        const SMALL: usize = 100;
+        let problem = &self.normal.problem;
+        let n_hexes = problem.hexes.len();
+        if n_hexes > SMALL {
+            let limits = raise::Limits { rounds: self.options.programs, iterations: 80 };
+            let mut smooth = points.clone();
+            let shapes = UntangleLimits { extra_rounds: 4, ..UntangleLimits::new() };
+            let stopped = untangle(problem, &mut smooth, shapes, context).stopped;
+            let stopped = stopped.or_else(|| raise::raise(problem, points, target, limits, context));
+            if stopped.is_some() {
+                return stopped;
+            }
+            if bad_cells(problem, &smooth).is_empty() {
+                let stopped = raise::raise(problem, &mut smooth, target, limits, context);
+                let worst = |points: &[Vector]| maxmin::judge(problem, points, 1.0).worst;
+                if worst(&smooth) > worst(points) {
+                    *points = smooth;
+                }
+                if stopped.is_some() {
+                    return stopped;
+                }
+            }
+        }
+        let programs =
+            if n_hexes <= SMALL { self.options.programs } else { self.options.programs * SMALL / n_hexes / 2 };
+        if n_hexes <= self.options.whole_limit && programs > 0 {
+            let limits = maxmin::Limits { iterations: programs, band: 0.3, tolerance: 1e-9 };
+            return maxmin::climb(problem, points, Goal::ScaledJacobian { target }, limits, context).stopped;
+        }
+        // A round judges every cell; very large meshes get fewer.
+        let share = if n_hexes > self.options.local_limit { 8 } else { 5 };
+        local::climb_worst(problem, points, target, self.options.programs / share, context)
     }
 
     /// Lowers the condition numbers of the good candidates and puts the best first.

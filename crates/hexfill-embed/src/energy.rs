@@ -92,6 +92,11 @@ impl<'p> Energy<'p> {
         self.rows.iter().fold(f64::INFINITY, |m, &(d, _)| if d < m || d.is_nan() { d } else { m })
     }
 
+    /// How many hexes had a term that was not positive when [`smallest_determinant`](Self::smallest_determinant) was last asked.
+    pub(crate) fn n_not_positive(&self) -> usize {
+        self.rows.iter().filter(|row| row.0.is_nan() || row.0 <= 0.0).count()
+    }
+
     /// The value at `points`, and the gradient by variable (three numbers each).
     pub(crate) fn evaluate(&mut self, points: &[Vector], gradient: &mut [f64]) -> f64 {
         let (problem, terms, sizes, epsilon) = (self.problem, &self.terms, &self.sizes, self.epsilon);

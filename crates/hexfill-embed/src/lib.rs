@@ -26,11 +26,13 @@ mod measure;
 mod patch;
 mod problem;
 mod program;
+mod raise;
 mod random;
 mod report;
 #[cfg(test)]
 mod samples;
 mod star;
+mod star_search;
 mod tutte;
 mod untangle;
 mod vector;

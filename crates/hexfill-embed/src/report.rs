@@ -24,8 +24,8 @@ pub enum Objective {
 pub struct Options {
     /// What to strive for.
     pub objective: Objective,
-    /// Starts at most; 0 chooses by size: 8 up to 100 hexes, 4 up to 400, and beyond that as many as it takes, up to 4,
-    /// to find one that is valid.
+    /// Starts at most; 0 chooses by size: 8 up to 100 hexes, 4 up to 400, and beyond that as many as it takes to find
+    /// one that is valid, up to 4 (2 above 5000 hexes). One, if the star bounds say that no placement is valid.
     pub starts: u32,
     /// Worker threads; 0 uses the threads of the surrounding pool.
     pub threads: usize,
@@ -115,7 +115,8 @@ pub struct EmbedReport {
     pub shortest_edge: f64,
     /// The ten worst cells, worst first.
     pub worst_cells: Vec<CellQuality>,
-    /// The smallest vertex-star bound: no placement of the interior vertices has a larger worst scaled Jacobian.
+    /// The smallest vertex-star bound: no placement of the interior vertices has a larger worst scaled Jacobian (if the surface does
+    /// not cross itself, see [`StarBound::angle_bound`]).
     pub upper_bound: f64,
     /// The ten smallest vertex-star bounds, smallest first.
     pub star_bounds: Vec<StarBound>,
@@ -128,6 +129,10 @@ impl EmbedReport {
     /// Whether the boundary itself rules out any valid embedding: some vertex star has a bound below zero by more than
     /// rounding error. The only case in which "no embedding exists with this boundary" may be said.
     pub fn is_impossible(&self) -> bool {
-        self.upper_bound < -1e-12
+        is_impossible(self.upper_bound)
     }
+}
+
+pub(crate) fn is_impossible(upper_bound: f64) -> bool {
+    upper_bound < -1e-12
 }

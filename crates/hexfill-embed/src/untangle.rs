@@ -24,6 +24,8 @@ pub(crate) struct UntangleLimits {
     pub(crate) iterations: usize,
     /// Rounds to go on once everything is positive: further shape improvement.
     pub(crate) extra_rounds: usize,
+    /// Give up after so many rounds with neither fewer bad cells nor a better smallest determinant.
+    pub(crate) patience: usize,
     /// Weight of the volume term of the energy.
     pub(crate) volume_weight: f64,
 }
@@ -31,7 +33,7 @@ pub(crate) struct UntangleLimits {
 impl UntangleLimits {
     /// The usual limits, shapes only.
     pub(crate) const fn new() -> Self {
-        Self { rounds: 100, iterations: 200, extra_rounds: 0, volume_weight: 0.0 }
+        Self { rounds: 100, iterations: 200, extra_rounds: 0, patience: 15, volume_weight: 0.0 }
     }
 }
 
@@ -55,6 +57,8 @@ pub(crate) fn untangle(
     let mut smallest = energy.smallest_determinant(points);
     energy.epsilon = first_epsilon(smallest);
     let mut positive_rounds = 0;
+    let mut best = (usize::MAX, f64::NEG_INFINITY);
+    let mut stale = 0;
     for round in 0..limits.rounds {
         let before = energy.evaluate(points, &mut gradient);
         let diagonal = energy.inverse_diagonal();
@@ -90,6 +94,15 @@ pub(crate) fn untangle(
         }
         if stopped.is_some() {
             return Untangled { stopped };
+        }
+        let now = (energy.n_not_positive(), smallest);
+        if now.0 < best.0 || now.0 == best.0 && now.1 > best.1 + 0.01 * best.1.abs() {
+            (best, stale) = (now, 0);
+        } else {
+            stale += 1;
+            if stale >= limits.patience {
+                break;
+            }
         }
         energy.epsilon = next_epsilon(energy.epsilon, smallest, before, found.value);
         energy.measure(points);
