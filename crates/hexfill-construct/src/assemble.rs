@@ -24,7 +24,7 @@ pub fn count_cells(
 ) -> Result<(CellCount, usize), ConstructError> {
     let mut count = CellCount::new();
     let mut inner = 0;
-    for q in 0..n_quads {
+    for q in (0..n_quads).filter(|&q| !layer.is_open(QuadId::new(q))) {
         let pattern = layer.pattern(QuadId::new(q));
         let cell = library.find(&pattern).ok_or(ConstructError::NoCell { pattern })?;
         inner += cell.n_interior;
@@ -56,6 +56,9 @@ pub fn place_cells(
             ctx.report("cells", q as u64, Some(n_quads as u64), String::new);
         }
         let quad = QuadId::new(q);
+        if layer.is_open(quad) {
+            continue;
+        }
         let pattern = layer.pattern(quad);
         let cell = library.find(&pattern).ok_or(ConstructError::NoCell { pattern })?;
         ids.clear();

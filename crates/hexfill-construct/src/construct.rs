@@ -6,10 +6,10 @@ use crate::cell::{CellChoice, CellLibrary};
 use crate::colouring::{all_black, colouring};
 use crate::error::ConstructError;
 use crate::handlebody::HandlebodyTets;
-use crate::layer::Layer;
+use crate::join::{fill_join, joins};
+use crate::layer::{Layer, triangles};
 use crate::matching::light_sides;
 use crate::report::{Report, Route};
-use crate::shell::ShellTets;
 use crate::sigma::sigma;
 use crate::split::{core_points, split_tets};
 use crate::start::start_positions;
@@ -102,22 +102,23 @@ pub fn construct(
         Some(library) => library,
         None => CellLibrary::built_in(options.cells),
     };
-    stage("matching")?;
-    let sides = light_sides(surface, ctx)?;
-    stage("buffer layer")?;
-    let layer = Layer::new(surface, &colours, &sides, library)?;
     stage("tetrahedra")?;
-    let triangles = layer.triangles();
+    let triangles = triangles(surface, &colours);
     let request = TetRequest { n_vertices: surface.n_vertices(), triangles: &triangles, points };
     let ball = BallTets { surface, colouring: &colours, core: options.ball_core };
     let maker: &dyn InteriorTets = match &options.tets {
         Some(maker) => maker.as_ref(),
         None if surface.is_sphere() => &ball,
-        None if surface.genus() == 0 => &ShellTets,
         None => &HandlebodyTets,
     };
     let complex = maker.fill(&request, ctx)?;
     let boundary = complex.match_boundary(&request)?;
+    let joins = joins(surface, &complex, &boundary)?;
+    stage("matching")?;
+    let left_open: Vec<QuadId> = joins.iter().flat_map(|j| j.quads).collect();
+    let sides = light_sides(surface, &left_open, ctx)?;
+    stage("buffer layer")?;
+    let layer = Layer::new(surface, &colours, &sides, library)?;
     stage("sigma")?;
     let cut = sigma(surface, &colours, &complex, &surface_edges(surface, &layer, &complex, &boundary))?;
     stage("cells")?;
@@ -132,7 +133,7 @@ pub fn construct(
             _ => 2,
         }] += 1;
     }
-    let report = Report {
+    let mut report = Report {
         route: match (options.route, colours.n_cut_edges) {
             (RouteChoice::Erickson, _) => Route::Erickson,
             (RouteChoice::Auto, 0) => Route::Bipartite,
@@ -148,6 +149,8 @@ pub fn construct(
         n_tets: complex.tets.len(),
         n_split,
         n_core_hexes: 4 * n_split[0] + 7 * n_split[1] + 8 * n_split[2],
+        n_joins: joins.len(),
+        n_join_hexes: 0,
     };
     if report.n_hexes() > HexMesh::MAX_HEXES {
         return Err(ConstructError::TooLarge { what: "hexes", given: report.n_hexes(), limit: HexMesh::MAX_HEXES });
@@ -162,32 +165,85 @@ pub fn construct(
         limit: u32::MAX as usize,
     })?;
     let core = core_points(&complex, &cut, &boundary, &layer, surface.n_vertices(), first)?;
+    let first_core_hex = hexes.len();
     split_tets(&complex, &cut, &core, &mut hexes);
     debug_assert_eq!(hexes.len(), report.n_hexes());
+    let mut n_vertices = core.end as usize;
+    let mut start = points.map(|p| start_positions(surface, p, &layer, library, &complex, &core));
+    if !joins.is_empty() {
+        stage("odd components")?;
+        let mut first_hex = vec![first_core_hex];
+        for edges in &complex.tet_edges {
+            let n_cut = edges.iter().filter(|&&e| cut[e as usize]).count();
+            first_hex.push(first_hex.last().map_or(0, |l| l + 4 + n_cut));
+        }
+        let mut removed = vec![false; hexes.len()];
+        let mut added: Vec<[u32; 8]> = Vec::new();
+        for join in &joins {
+            let made = fill_join(join, &layer, library, &hexes, &first_hex, start.as_deref(), ctx)?;
+            made.removed.iter().for_each(|&h| removed[h] = true);
+            report.n_core_hexes -= made.removed.len();
+            report.n_join_hexes += made.filling.mesh.n_hexes();
+            let n_old = made.ids.len();
+            let first = n_vertices;
+            n_vertices += made.filling.mesh.n_vertices() - n_old;
+            if n_vertices > u32::MAX as usize {
+                return Err(ConstructError::TooLarge { what: "vertices", given: n_vertices, limit: u32::MAX as usize });
+            }
+            let place = |v: usize| if v < n_old { made.ids[v] } else { (first + v - n_old) as u32 };
+            added.extend(made.filling.mesh.hexes().iter().map(|h| h.map(|v| place(v.index()))));
+            if let Some(start) = &mut start {
+                match &made.filling.start {
+                    Some(inner) => start.extend(&inner[n_old..]),
+                    None => start.resize(n_vertices, [0.0; 3]),
+                }
+            }
+        }
+        let mut kept = removed.iter();
+        hexes.retain(|_| kept.next().is_some_and(|r| !r));
+        hexes.extend(added);
+        n_vertices = without_gaps(surface.n_vertices(), n_vertices, &mut hexes, start.as_mut());
+    }
     stage("mesh")?;
-    let n_vertices = core.end as usize;
-    let start = points.map(|p| start_positions(surface, p, &layer, library, &complex, &core));
     drop((complex, core, cut, triangles));
     let mesh = HexMesh::try_new(n_vertices, &hexes)?;
     Ok(Construction { mesh, report, start })
 }
 
+/// Renumbers the inner vertices that hexes use, in order; returns the number of vertices.
+fn without_gaps(
+    n_surface: usize,
+    n_vertices: usize,
+    hexes: &mut [[u32; 8]],
+    start: Option<&mut Vec<[f64; 3]>>,
+) -> usize {
+    let mut used = vec![false; n_vertices];
+    hexes.iter().flatten().for_each(|&v| used[v as usize] = true);
+    used[..n_surface].fill(true);
+    let mut number = vec![0u32; n_vertices];
+    let mut next = 0u32;
+    for (number, _) in number.iter_mut().zip(&used).filter(|(_, used)| **used) {
+        *number = next;
+        next += 1;
+    }
+    hexes.iter_mut().flatten().for_each(|v| *v = number[*v as usize]);
+    if let Some(start) = start {
+        let mut used = used.iter();
+        start.retain(|_| used.next().is_some_and(|u| *u));
+    }
+    next as usize
+}
+
 /// The triangles that tetrahedra of the interior have to fill, outward, as vertices of the surface: two a quad. For
 /// making tetrahedra elsewhere (see [`crate::GivenTets`]).
-///
-/// # Errors
-/// As [`construct`], for the steps before the tetrahedra.
-pub fn core_triangles(
-    surface: &QuadSurface,
-    route: RouteChoice,
-    ctx: &Context<'_>,
-) -> Result<Vec<[u32; 3]>, ConstructError> {
-    let colours = match route {
-        RouteChoice::Auto => colouring(surface),
-        RouteChoice::Erickson => all_black(surface),
-    };
-    let sides = light_sides(surface, ctx)?;
-    Ok(Layer::new(surface, &colours, &sides, CellLibrary::built_in(CellChoice::Fewest))?.triangles())
+pub fn core_triangles(surface: &QuadSurface, route: RouteChoice) -> Vec<[u32; 3]> {
+    triangles(
+        surface,
+        &match route {
+            RouteChoice::Auto => colouring(surface),
+            RouteChoice::Erickson => all_black(surface),
+        },
+    )
 }
 
 /// Per dart: the edge of the complex under it.

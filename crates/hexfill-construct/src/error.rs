@@ -13,15 +13,26 @@ pub enum ConstructError {
         /// Number of quads.
         given: usize,
     },
-    /// A component has an odd number of quads: legal, but it must be joined to another odd one, which is not built.
+    /// A component and the cavities in it have an odd number of quads together: no hex mesh exists, even if the
+    /// whole surface has an even number.
     #[error(
-        "component {component} has {given} quads, an odd number; components can be filled together only if each is even"
+        "component {component} with its cavities has {given} quads, an odd number: every hex mesh of a connected solid has an even number"
     )]
     OddComponent {
-        /// The component.
+        /// The component with the smallest quad.
         component: usize,
-        /// Its number of quads.
+        /// The number of quads.
         given: usize,
+    },
+    /// Two components of a solid have odd numbers of quads and no chain of hexes was found that joins them.
+    #[error(
+        "components {components:?} have odd numbers of quads and could not be joined by a chain of hexes: {reason}"
+    )]
+    OddJoin {
+        /// The components.
+        components: [usize; 2],
+        /// What went wrong.
+        reason: String,
     },
     /// Quads that share too much, so that no proper hex mesh has them in its boundary.
     #[error("{} pairs of quads share more than a vertex or an edge: {pairs}; split these quads", pairs.count)]
@@ -37,8 +48,8 @@ pub enum ConstructError {
         /// The whole cycle, sorted.
         cycle: Vec<Edge>,
     },
-    /// The interior is not a ball and no tetrahedra of it are at hand.
-    #[error("the surface has genus {genus} and {components} component(s), so its interior is not a ball: {reason}")]
+    /// Tetrahedra of the interior are needed and not at hand.
+    #[error("tetrahedra of the interior are needed (genus {genus}, {components} component(s)): {reason}")]
     InteriorNeeded {
         /// Sum of the genera.
         genus: u64,

@@ -5,8 +5,9 @@
 //! that two quads share nothing, a vertex or an edge. Which cycles bound is read off linking numbers.
 
 use crate::darts::Darts;
-use crate::linking::linking;
-use hexfill_mesh::{Edge, ImproperPair, Offenders, QuadSurface, bipartition, improper_pairs};
+use crate::linking::{LinkingError, linking};
+use crate::solids::solids;
+use hexfill_mesh::{Context, Edge, ImproperPair, Offenders, QuadId, QuadSurface, bipartition, improper_pairs};
 use std::collections::BTreeSet;
 
 /// Whether a proper hex mesh with this boundary exists.
@@ -20,6 +21,13 @@ pub enum Existence {
     },
     /// No: the number of quads is odd.
     OddQuads {
+        /// Number of quads.
+        given: usize,
+    },
+    /// No: a component and the cavities in it have an odd number of quads together.
+    OddSolid {
+        /// The components, the outside first.
+        components: Vec<usize>,
         /// Number of quads.
         given: usize,
     },
@@ -40,6 +48,38 @@ pub enum Existence {
     },
 }
 
+/// Whether a solid (an outside and its cavities) has an odd number of quads, where components do.
+fn odd_solid(surface: &QuadSurface, points: Option<&[[f64; 3]]>) -> Option<Existence> {
+    let mut size = vec![0usize; surface.n_components()];
+    for q in 0..surface.n_quads() {
+        size[surface.component(QuadId::new(q))] += 1;
+    }
+    if size.iter().all(|s| s.is_multiple_of(2)) {
+        return None;
+    }
+    let unknown = |reason: String| Some(Existence::Unknown { reason });
+    let Some(points) = points else {
+        return unknown(
+            "some components have odd numbers of quads; positions are needed to see which of them bound one solid"
+                .into(),
+        );
+    };
+    let mut triangles = Vec::with_capacity(2 * surface.n_quads());
+    let mut component = Vec::with_capacity(2 * surface.n_quads());
+    for (q, quad) in surface.quads().iter().enumerate() {
+        let [a, b, c, d] = quad.map(|v| v.0);
+        triangles.extend([[a, b, c], [a, c, d]]);
+        component.extend([surface.component(QuadId::new(q)); 2]);
+    }
+    match solids(&triangles, &component, size.len(), points) {
+        Err(reason) => unknown(reason),
+        Ok(solids) => solids.into_iter().find_map(|components| {
+            let given: usize = components.iter().map(|&c| size[c]).sum();
+            (!given.is_multiple_of(2)).then_some(Existence::OddSolid { components, given })
+        }),
+    }
+}
+
 /// Decides existence. `points` are needed only if the surface has odd cycles (never for spheres).
 pub fn existence(surface: &QuadSurface, points: Option<&[[f64; 3]]>) -> Existence {
     if !surface.n_quads().is_multiple_of(2) {
@@ -48,6 +88,9 @@ pub fn existence(surface: &QuadSurface, points: Option<&[[f64; 3]]>) -> Existenc
     let pairs = improper_pairs(surface);
     if !pairs.is_empty() {
         return Existence::ImproperQuads { pairs };
+    }
+    if let Some(answer) = odd_solid(surface, points) {
+        return answer;
     }
     if bipartition(surface).is_ok() {
         return Existence::Exists { because: "an even number of quads and no odd cycle" };
@@ -58,9 +101,10 @@ pub fn existence(surface: &QuadSurface, points: Option<&[[f64; 3]]>) -> Existenc
         };
     };
     let s = Darts::of_surface(surface);
-    let l = match linking(&s, points) {
+    let l = match linking(&s, points, &Context::default()) {
         Ok(l) => l,
-        Err(e) => return Existence::Unknown { reason: e.to_string() },
+        Err(LinkingError::Undecided(reason)) => return Existence::Unknown { reason: reason.into() },
+        Err(LinkingError::Stopped(reason)) => return Existence::Unknown { reason: format!("stopped: {reason:?}") },
     };
     // Rows: linking numbers mod 2, then the parity of the length, with the loops they are sums of.
     let n = l.loops.len();

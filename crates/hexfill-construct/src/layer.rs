@@ -30,8 +30,29 @@ pub struct Layer<'a> {
     facet: Vec<u32>,
     /// Per quad: the corner of the quad that is corner 0 of its pattern (0 or 1).
     turn: Vec<u8>,
+    /// Per quad: whether its cube is left open (see `join.rs`).
+    open: Vec<bool>,
     /// First id after the layer's walls; inner points of cells and the core follow.
     n_points: u32,
+}
+
+/// The corner of a quad that is corner 0 of its pattern (0 or 1): a black one with a black one opposite.
+fn turn_of(surface: &QuadSurface, white: &[bool], q: QuadId) -> u8 {
+    let corners = surface.quad(q);
+    u8::from(white[corners[0].index()] || white[corners[2].index()])
+}
+
+/// The triangles of the inner copy, outward, as vertices of the surface; triangle `2 q + t` is triangle `t` of
+/// quad `q`: (corner 0, corner 1, corner 2) or (corner 2, corner 3, corner 0) of its pattern.
+pub fn triangles(surface: &QuadSurface, colouring: &Colouring) -> Vec<[u32; 3]> {
+    (0..surface.n_quads())
+        .flat_map(|q| {
+            let q = QuadId::new(q);
+            let turn = usize::from(turn_of(surface, &colouring.white, q));
+            let corners = surface.quad(q);
+            [[0, 1, 2], [2, 3, 0]].map(|t| t.map(|k| corners[(k + turn) % 4].0))
+        })
+        .collect()
 }
 
 impl<'a> Layer<'a> {
@@ -75,7 +96,7 @@ impl<'a> Layer<'a> {
         let mut facet = vec![0u32; n_quads];
         for q in 0..n_quads {
             let corners = surface.quad(QuadId::new(q));
-            turn[q] = u8::from(white[corners[0].index()] || white[corners[2].index()]);
+            turn[q] = turn_of(surface, white, QuadId::new(q));
             let odd = [1, 3].map(|k| corners[(k + usize::from(turn[q])) % 4]);
             facet[q] = take(1 + odd.iter().map(|v| if white[v.index()] { 1 } else { 2 }).sum::<u32>());
         }
@@ -89,12 +110,13 @@ impl<'a> Layer<'a> {
             star_at_origin: vec![false; 4 * n_quads],
             facet,
             turn,
+            open: sides.open.clone(),
             n_points: next,
         };
         layer.choose_stars(library);
         for q in 0..n_quads {
             let pattern = layer.pattern(QuadId::new(q));
-            if library.find(&pattern).is_none() {
+            if !layer.open[q] && library.find(&pattern).is_none() {
                 return Err(ConstructError::NoCell { pattern });
             }
         }
@@ -134,6 +156,11 @@ impl<'a> Layer<'a> {
     /// Whether Sigma crosses the inner edge under a dart.
     pub fn is_cut(&self, d: Dart) -> bool {
         !self.white[self.surface.origin(d).index()] && !self.white[self.surface.target(d).index()]
+    }
+
+    /// Whether the cube of a quad is left open.
+    pub fn is_open(&self, q: QuadId) -> bool {
+        self.open[q.index()]
     }
 
     /// First id after the layer's walls.
@@ -224,16 +251,5 @@ impl<'a> Layer<'a> {
             Role::FacePair(t) => self.face_point(q, t, false),
             Role::Interior(_) => u32::MAX,
         }
-    }
-
-    /// The triangles of the inner copy, outward, as vertices of the surface; triangle `2 q + t` is triangle `t` of
-    /// quad `q`: (corner 0, corner 1, corner 2) or (corner 2, corner 3, corner 0) of its pattern.
-    pub fn triangles(&self) -> Vec<[u32; 3]> {
-        (0..self.surface.n_quads())
-            .flat_map(|q| {
-                let q = QuadId::new(q);
-                [[0, 1, 2], [2, 3, 0]].map(|t| t.map(|k| self.corner(q, k).0))
-            })
-            .collect()
     }
 }

@@ -8,7 +8,7 @@
 //! intersection form, is invertible over Z (checked modulo 2 and modulo an odd prime).
 
 use crate::darts::{Darts, NONE, TreeCotree, tree_cotree};
-use crate::error::ConstructError;
+use hexfill_mesh::{Context, StopReason};
 
 /// Basis loops and their linking numbers: `numbers[i][j]` is that of loop `i` with loop `j` pushed outward.
 pub(crate) struct Linking {
@@ -47,15 +47,22 @@ fn gauss(a: Point, b: Point, c: Point, d: Point) -> f64 {
     if sign == 0.0 { 0.0 } else { area * sign.signum() / (4.0 * std::f64::consts::PI) }
 }
 
-fn failed(reason: &str) -> ConstructError {
-    ConstructError::InteriorNeeded { genus: 0, components: 0, reason: reason.into() }
+/// Why there are no linking numbers.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum LinkingError {
+    /// The positions do not tell.
+    Undecided(&'static str),
+    /// The work was told to stop.
+    Stopped(StopReason),
 }
+
+use LinkingError::Undecided as failed;
 
 /// Basis loops of the surface and their linking numbers.
 ///
 /// # Errors
-/// [`ConstructError::InteriorNeeded`] if the positions do not tell (degenerate or self-intersecting surface).
-pub(crate) fn linking(s: &Darts, points: &[Point]) -> Result<Linking, ConstructError> {
+/// [`LinkingError`] if the positions do not tell (degenerate or self-intersecting surface), or told to stop.
+pub(crate) fn linking(s: &Darts, points: &[Point], ctx: &Context<'_>) -> Result<Linking, LinkingError> {
     if points.len() < s.n_vertices || points.iter().flatten().any(|x| !x.is_finite()) {
         return Err(failed("the positions are missing or not finite"));
     }
@@ -90,13 +97,16 @@ pub(crate) fn linking(s: &Darts, points: &[Point]) -> Result<Linking, ConstructE
         for &d in l {
             let v = s.origin[d as usize];
             debug_assert_ne!(first[v as usize], NONE);
-            line.push(push(v, first[v as usize]).ok_or_else(|| failed("a vertex has no outward direction"))?);
+            line.push(push(v, first[v as usize]).ok_or(failed("a vertex has no outward direction"))?);
         }
         pushed.push(line);
     }
     let mut numbers = vec![vec![0i64; loops.len()]; loops.len()];
     for (i, l) in loops.iter().enumerate() {
         for (j, line) in pushed.iter().enumerate() {
+            if let Some(reason) = ctx.stop() {
+                return Err(LinkingError::Stopped(reason));
+            }
             let mut sum = 0.0;
             for &d in l {
                 let (a, b) = (at(s.origin[d as usize]), at(s.target(d)));

@@ -10,7 +10,7 @@
 use crate::error::ConstructError;
 use hexfill_mesh::{Context, Dart, QuadId, QuadSurface};
 
-/// The light sides, an odd number at each quad.
+/// The light sides, an odd number at each quad (but for those left open).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LightSides {
     /// Per dart: whether its edge is light (equal for twins).
@@ -19,6 +19,8 @@ pub struct LightSides {
     pub n_unmatched: usize,
     /// Number of quads with three light sides.
     pub n_triple: usize,
+    /// Per quad: whether its cube is left open; only such a quad has an even number of light sides.
+    pub open: Vec<bool>,
 }
 
 /// Quads visited in the search for one augmenting path.
@@ -26,14 +28,22 @@ const SEARCH_LIMIT: usize = 4000;
 
 const FREE: Dart = Dart(u32::MAX);
 
-/// Chooses the light sides. Linear time.
+/// Chooses the light sides. Linear time. `left_open` are quads that get an even number of them: one in each
+/// component with an odd number of quads.
 ///
 /// # Errors
-/// [`ConstructError::OddComponent`] if a component has an odd number of quads; [`ConstructError::Stopped`].
-pub fn light_sides(surface: &QuadSurface, ctx: &Context<'_>) -> Result<LightSides, ConstructError> {
+/// [`ConstructError::OddComponent`] if a component has an odd number of quads and none is left open;
+/// [`ConstructError::Stopped`].
+pub fn light_sides(
+    surface: &QuadSurface,
+    left_open: &[QuadId],
+    ctx: &Context<'_>,
+) -> Result<LightSides, ConstructError> {
+    let mut open = vec![false; surface.n_quads()];
+    left_open.iter().for_each(|q| open[q.index()] = true);
     let mut size = vec![0usize; surface.n_components()];
-    for q in 0..surface.n_quads() {
-        size[surface.component(QuadId::new(q))] += 1;
+    for (q, open) in open.iter().enumerate() {
+        size[surface.component(QuadId::new(q))] += 1 + usize::from(*open);
     }
     if let Some(component) = size.iter().position(|s| s % 2 == 1) {
         return Err(ConstructError::OddComponent { component, given: size[component] });
@@ -44,13 +54,13 @@ pub fn light_sides(surface: &QuadSurface, ctx: &Context<'_>) -> Result<LightSide
     for &d in mate.iter().filter(|&&d| d != FREE) {
         light[d.index()] = true;
     }
-    let mut odd: Vec<bool> = mate.iter().map(|&d| d == FREE).collect();
-    let n_unmatched = odd.iter().filter(|&&o| o).count();
-    if n_unmatched > 0 {
+    let n_unmatched = mate.iter().filter(|&&d| d == FREE).count();
+    let mut odd: Vec<bool> = mate.iter().zip(&open).map(|(&d, &open)| (d == FREE) != open).collect();
+    if odd.contains(&true) {
         tree_join(surface, &mut odd, &mut light);
     }
     let n_triple = light.chunks(4).filter(|l| l.iter().filter(|&&x| x).count() == 3).count();
-    Ok(LightSides { light, n_unmatched, n_triple })
+    Ok(LightSides { light, n_unmatched, n_triple, open })
 }
 
 /// Per quad: its dart across which it is matched, or [`FREE`].
@@ -186,7 +196,7 @@ mod tests {
     use hexfill_mesh::generate::{random_sphere, torus};
 
     fn check(surface: &QuadSurface) -> LightSides {
-        let l = light_sides(surface, &Context::default()).unwrap();
+        let l = light_sides(surface, &[], &Context::default()).unwrap();
         for d in surface.darts() {
             assert_eq!(l.light[d.index()], l.light[surface.twin(d).index()]);
         }
@@ -223,9 +233,15 @@ mod tests {
     }
 
     #[test]
-    fn an_odd_component_is_refused() {
+    fn an_odd_component_is_refused_or_left_open_at_one_quad() {
+        let s = torus(3, 5, 0).unwrap();
+        let l = light_sides(&s, &[QuadId(7)], &Context::default()).unwrap();
+        for (q, c) in l.light.chunks(4).enumerate() {
+            assert_eq!(c.iter().filter(|&&x| x).count() % 2 == 0, q == 7);
+        }
+
         assert!(matches!(
-            light_sides(&torus(3, 5, 0).unwrap(), &Context::default()),
+            light_sides(&torus(3, 5, 0).unwrap(), &[], &Context::default()),
             Err(ConstructError::OddComponent { component: 0, given: 15 })
         ));
     }

@@ -48,14 +48,18 @@ pub struct Report {
     pub n_tets: usize,
     /// Tetrahedra split into 4, 7 and 8 hexes.
     pub n_split: [usize; 3],
-    /// Hexes of the core.
+    /// Hexes of the core (without those that joins replace).
     pub n_core_hexes: usize,
+    /// Pairs of odd components joined by a chain.
+    pub n_joins: usize,
+    /// Hexes of the joins.
+    pub n_join_hexes: usize,
 }
 
 impl Report {
     /// Number of hexes.
     pub fn n_hexes(&self) -> usize {
-        self.n_cell_hexes + self.n_core_hexes
+        self.n_cell_hexes + self.n_core_hexes + self.n_join_hexes
     }
 
     /// Hexes per quad of the surface.
@@ -81,6 +85,9 @@ impl fmt::Display for Report {
         )?;
         for (pattern, (count, hexes)) in &self.cells {
             writeln!(f, "cell {pattern}: {count} x {hexes} hexes")?;
+        }
+        if self.n_joins > 0 {
+            writeln!(f, "pairs of odd components joined: {}, {} hexes", self.n_joins, self.n_join_hexes)?;
         }
         let [four, seven, eight] = self.n_split;
         write!(

@@ -10,7 +10,7 @@
 
 use crate::colouring::Colouring;
 use crate::error::ConstructError;
-use crate::tets::{TET_EDGES, TetComplex, others, tet_edge};
+use crate::tets::{TET_EDGES, TetComplex, find, others, tet_edge};
 use hexfill_mesh::{Dart, Edge, Offenders, QuadSurface, VertexId};
 use std::collections::BTreeSet;
 
@@ -256,14 +256,6 @@ fn propagate(complex: &TetComplex, width: usize) -> Option<Classes> {
     classes.relations.sort_unstable();
     classes.relations.dedup();
     Some(classes)
-}
-
-fn find(root: &mut [u32], mut v: u32) -> u32 {
-    while root[v as usize] != v {
-        root[v as usize] = root[root[v as usize] as usize];
-        v = root[v as usize];
-    }
-    v
 }
 
 /// Linear equations `form = 0` in echelon form, each with the surface edges it came from.

@@ -9,7 +9,6 @@ use crate::ball::{BallCore, BallTets};
 use crate::colouring::{Colouring, all_black, colouring};
 use crate::error::ConstructError;
 use crate::handlebody::HandlebodyTets;
-use crate::shell::ShellTets;
 use crate::sigma::sigma;
 use crate::tets::{InteriorTets, TetComplex, TetRequest};
 use hexfill_mesh::generate::{Random, random_sphere, torus};
@@ -62,15 +61,10 @@ fn triangles(surface: &QuadSurface, colours: &Colouring) -> Vec<[u32; 3]> {
 }
 
 impl Solid {
-    fn new(
-        surface: &QuadSurface,
-        colours: Colouring,
-        points: Option<&[[f64; 3]]>,
-        maker: impl Fn(&TetRequest<'_>) -> TetComplex,
-    ) -> Self {
+    fn ball(surface: &QuadSurface, colours: Colouring, core: BallCore) -> Self {
         let triangles = triangles(surface, &colours);
-        let request = TetRequest { n_vertices: surface.n_vertices(), triangles: &triangles, points };
-        let complex = maker(&request);
+        let request = TetRequest { n_vertices: surface.n_vertices(), triangles: &triangles, points: None };
+        let complex = BallTets { surface, colouring: &colours, core }.fill(&request, &Context::default()).unwrap();
         Self { surface: surface.clone(), colours, triangles, complex }
     }
 
@@ -363,9 +357,7 @@ fn balls() {
         let surface = random_sphere(8 + 2 * (i as usize % 9), i).unwrap();
         for colours in [all_black(&surface), colouring(&surface)] {
             for core in [BallCore::Centred, BallCore::Fewest] {
-                let solid = Solid::new(&surface, colours.clone(), None, |r| {
-                    BallTets { surface: &surface, colouring: &colours, core }.fill(r, &Context::default()).unwrap()
-                });
+                let solid = Solid::ball(&surface, colours.clone(), core);
                 assert!(solid.check());
             }
         }
@@ -404,7 +396,7 @@ fn hollow(holes: &[[usize; 3]]) -> Solid {
     let (surface, points) = voxels([3, 3, 5], |p| !holes.contains(&p));
     assert_eq!(surface.n_components(), holes.len() + 1);
     let colours = all_black(&surface);
-    Solid::new(&surface, colours, Some(&points), |r| ShellTets.fill(r, &Context::default()).unwrap())
+    Solid::handlebody(&surface, colours, &points).unwrap()
 }
 
 #[test]

@@ -29,6 +29,55 @@ pub struct TetRequest<'a> {
     pub points: Option<&'a [[f64; 3]]>,
 }
 
+impl TetRequest<'_> {
+    /// Per triangle its component, numbered by smallest triangle, and how many there are.
+    pub fn components(&self) -> (Vec<usize>, usize) {
+        let mut root: Vec<u32> = (0..self.n_vertices as u32).collect();
+        for t in self.triangles {
+            for k in 0..2 {
+                let (a, b) = (find(&mut root, t[k]), find(&mut root, t[k + 1]));
+                root[a.max(b) as usize] = a.min(b);
+            }
+        }
+        let mut number = vec![usize::MAX; self.n_vertices];
+        let mut n = 0;
+        let of = |t: &[u32; 3]| {
+            let slot = &mut number[find(&mut root, t[0]) as usize];
+            if *slot == usize::MAX {
+                *slot = n;
+                n += 1;
+            }
+            *slot
+        };
+        let components = self.triangles.iter().map(of).collect();
+        (components, n)
+    }
+
+    /// Sum of the genera of the components, and how many components there are.
+    pub fn shape(&self) -> (u64, usize) {
+        let (_, components) = self.components();
+        let mut used = vec![false; self.n_vertices];
+        self.triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
+        let vertices = used.iter().filter(|&&u| u).count() as i64;
+        let euler = vertices - self.triangles.len() as i64 / 2;
+        (((2 * components as i64 - euler) / 2).max(0) as u64, components)
+    }
+
+    /// The error of a maker that cannot fill this request.
+    pub fn interior_needed(&self, reason: impl Into<String>) -> ConstructError {
+        let (genus, components) = self.shape();
+        ConstructError::InteriorNeeded { genus, components, reason: reason.into() }
+    }
+}
+
+pub(crate) fn find(root: &mut [u32], mut v: u32) -> u32 {
+    while root[v as usize] != v {
+        root[v as usize] = root[root[v as usize] as usize];
+        v = root[v as usize];
+    }
+    v
+}
+
 /// A tetrahedral mesh as a cell complex. See the module page.
 #[derive(Clone, Debug, Default)]
 pub struct TetComplex {

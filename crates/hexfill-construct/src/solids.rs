@@ -1,0 +1,110 @@
+//! Which components of a surface bound the same solid: an outer one and the cavities right inside it.
+//!
+//! A component lies inside another iff the other winds round one of its vertices (solid angles, van Oosterom and
+//! Strackee 1983). At even depth it is the outside of a solid, at odd depth a cavity of the solid round it; outsides
+//! must face outward (positive volume), cavities the other way.
+
+type Point = [f64; 3];
+
+fn sub(a: Point, b: Point) -> Point {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+fn det([a, b, c]: [Point; 3]) -> f64 {
+    a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0])
+}
+
+/// Solid angle of a triangle seen from a point.
+fn angle(at: Point, t: [Point; 3]) -> f64 {
+    let [a, b, c] = t.map(|p| sub(p, at));
+    let dot = |a: Point, b: Point| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    let [la, lb, lc] = [a, b, c].map(|p| dot(p, p).sqrt());
+    2.0 * det([a, b, c]).atan2(la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb)
+}
+
+/// The solids as lists of components, the outside first; ascending by outside. `component[t]` is that of triangle `t`.
+///
+/// # Errors
+/// A sentence: a component faces the wrong way for its depth.
+pub(crate) fn solids(
+    triangles: &[[u32; 3]],
+    component: &[usize],
+    n_components: usize,
+    points: &[Point],
+) -> Result<Vec<Vec<usize>>, String> {
+    let at = |t: [u32; 3]| t.map(|v| points[v as usize]);
+    let mut parts: Vec<Vec<[u32; 3]>> = vec![Vec::new(); n_components];
+    for (&t, &c) in triangles.iter().zip(component) {
+        parts[c].push(t);
+    }
+    let volume = |part: &[[u32; 3]]| -> f64 {
+        let origin = points[part[0][0] as usize];
+        part.iter().map(|&t| det(at(t).map(|p| sub(p, origin)))).sum()
+    };
+    let around: Vec<Vec<usize>> = (0..n_components)
+        .map(|c| {
+            let seen_from = points[parts[c][0][0] as usize];
+            let winds = |other: usize| {
+                let total: f64 = parts[other].iter().map(|&t| angle(seen_from, at(t))).sum();
+                total.abs() > 2.0 * std::f64::consts::PI
+            };
+            (0..n_components).filter(|&other| other != c && winds(other)).collect()
+        })
+        .collect();
+    let mut solids: Vec<Vec<usize>> = Vec::new();
+    let mut solid_of = vec![usize::MAX; n_components];
+    for c in (0..n_components).filter(|&c| around[c].len().is_multiple_of(2)) {
+        if volume(&parts[c]) <= 0.0 {
+            return Err(format!("component {c} is the outside of a solid and faces inward: reverse its quads"));
+        }
+        solid_of[c] = solids.len();
+        solids.push(vec![c]);
+    }
+    for c in (0..n_components).filter(|&c| !around[c].len().is_multiple_of(2)) {
+        if volume(&parts[c]) >= 0.0 {
+            return Err(format!("component {c} is a cavity and faces outward: reverse its quads"));
+        }
+        // The innermost component around it.
+        let outside = around[c].iter().copied().max_by_key(|&o| around[o].len());
+        match outside.map(|o| solid_of[o]).filter(|&s| s != usize::MAX) {
+            Some(s) => solids[s].push(c),
+            None => return Err(format!("component {c} is in no solid: components meet each other")),
+        }
+    }
+    Ok(solids)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A cube of half side `r` about (x, 0, 0), outward or inward.
+    fn cube(x: f64, r: f64, outward: bool, points: &mut Vec<Point>, triangles: &mut Vec<[u32; 3]>) {
+        use hexfill_mesh::cube::{FACETS, POSITIONS};
+        let first = points.len() as u32;
+        points.extend(POSITIONS.map(|p| {
+            let at = |k: usize| r * (2.0 * f64::from(p[k]) - 1.0);
+            [x + at(0), at(1), at(2)]
+        }));
+        for f in FACETS {
+            let [a, b, c, d] = f.map(|k| first + k as u32);
+            for t in [[a, b, c], [a, c, d]] {
+                triangles.push(if outward { t } else { [t[0], t[2], t[1]] });
+            }
+        }
+    }
+
+    #[test]
+    fn nested_and_apart() {
+        let (mut points, mut triangles) = (Vec::new(), Vec::new());
+        // A cavity, its outside, an island in the cavity, another solid, a cavity of the island.
+        let all = [(0.0, 4.0, false), (0.0, 5.0, true), (0.5, 2.0, true), (20.0, 1.0, true), (0.0, 1.0, false)];
+        for (x, r, outward) in all {
+            cube(x, r, outward, &mut points, &mut triangles);
+        }
+        let component: Vec<usize> = (0..triangles.len()).map(|t| t / 12).collect();
+        assert_eq!(solids(&triangles, &component, 5, &points).unwrap(), [vec![1, 0], vec![2, 4], vec![3]]);
+        let flipped: Vec<[u32; 3]> = triangles.iter().map(|&[a, b, c]| [a, c, b]).collect();
+        assert!(solids(&flipped, &component, 5, &points).is_err());
+    }
+}
