@@ -25,6 +25,9 @@ use rayon::prelude::*;
 /// Starts tried at once after the first.
 const BATCH: u32 = 4;
 
+/// Meshes of so many hexes are left to the linear programs.
+const SMALL: usize = 100;
+
 /// A balanced result keeps this share of the optimum.
 const BALANCED_SHARE: f64 = 0.95;
 
@@ -352,6 +355,15 @@ impl Search<'_> {
         } else {
             (bad, stopped) = local::untangle_whole(problem, &mut points, context);
         }
+        if !bad.is_empty() && n_hexes <= SMALL && stopped.is_none() && self.upper_bound > 0.0 {
+            // Where the energy is stuck, programs that raise the worst corner may still get through.
+            let mut trial = points.clone();
+            stopped = self.climb(&mut trial, self.upper_bound.min(0.02), 40, context);
+            let left = bad_cells(problem, &trial);
+            if left.len() < bad.len() {
+                (points, bad) = (trial, left);
+            }
+        }
         if let Some(given) = self.start.filter(|_| number == 0 && !bad.is_empty()) {
             // A start that could not be untangled comes back no worse than it was.
             let rank = |points: &[Vector], bad: usize| (bad, -maxmin::judge(problem, points, 1.0).worst);
@@ -377,39 +389,53 @@ impl Search<'_> {
     /// ridges best; larger ones by barriers first, from the start as it is and from a smoothed one, as a program's cost grows
     /// faster than the mesh.
     fn improve(&self, points: &mut Vec<Vector>, target: f64, context: &Context<'_>) -> Option<StopReason> {
-        /// Meshes of so many hexes are left to the programs.
-        const SMALL: usize = 100;
         let problem = &self.normal.problem;
         let n_hexes = problem.hexes.len();
-        if n_hexes > SMALL {
-            let limits = raise::Limits { rounds: self.options.programs, iterations: 80 };
-            let mut smooth = points.clone();
-            let shapes = UntangleLimits { extra_rounds: 4, ..UntangleLimits::new() };
-            let stopped = untangle(problem, &mut smooth, shapes, context).stopped;
-            let stopped = stopped.or_else(|| raise::raise(problem, points, target, limits, context));
-            if stopped.is_some() {
-                return stopped;
-            }
-            if bad_cells(problem, &smooth).is_empty() {
-                let stopped = raise::raise(problem, &mut smooth, target, limits, context);
-                let worst = |points: &[Vector]| maxmin::judge(problem, points, 1.0).worst;
-                if worst(&smooth) > worst(points) {
-                    *points = smooth;
-                }
-                if stopped.is_some() {
-                    return stopped;
-                }
-            }
-        }
-        let programs =
-            if n_hexes <= SMALL { self.options.programs } else { self.options.programs * SMALL / n_hexes / 2 };
-        if n_hexes <= self.options.whole_limit && programs > 0 {
-            let limits = maxmin::Limits { iterations: programs, band: 0.3, tolerance: 1e-9 };
-            return maxmin::climb(problem, points, Goal::ScaledJacobian { target }, limits, context).stopped;
+        if n_hexes <= SMALL {
+            return self.climb(points, target, self.options.programs, context);
         }
         // A round judges every cell; very large meshes get fewer.
         let share = if n_hexes > self.options.local_limit { 8 } else { 5 };
-        local::climb_worst(problem, points, target, self.options.programs / share, context)
+        let by_patches = |points: &mut Vec<Vector>| {
+            local::climb_worst(problem, points, target, self.options.programs / share, context)
+        };
+        if n_hexes > self.options.whole_limit && local::is_worst_isolated(problem, points) {
+            return by_patches(points);
+        }
+        let limits = raise::Limits { rounds: self.options.programs, iterations: 80 };
+        let mut smooth = points.clone();
+        let shapes = UntangleLimits { extra_rounds: 4, ..UntangleLimits::new() };
+        let stopped = untangle(problem, &mut smooth, shapes, context).stopped;
+        let stopped = stopped.or_else(|| raise::raise(problem, points, target, limits, context));
+        if stopped.is_some() {
+            return stopped;
+        }
+        if bad_cells(problem, &smooth).is_empty() {
+            let stopped = raise::raise(problem, &mut smooth, target, limits, context);
+            let worst = |points: &[Vector]| maxmin::judge(problem, points, 1.0).worst;
+            if worst(&smooth) > worst(points) {
+                *points = smooth;
+            }
+            if stopped.is_some() {
+                return stopped;
+            }
+        }
+        if n_hexes > self.options.whole_limit {
+            return by_patches(points);
+        }
+        self.climb(points, target, self.options.programs * SMALL / n_hexes / 2, context)
+    }
+
+    /// Linear programs over the whole mesh.
+    fn climb(
+        &self,
+        points: &mut Vec<Vector>,
+        target: f64,
+        programs: usize,
+        context: &Context<'_>,
+    ) -> Option<StopReason> {
+        let limits = maxmin::Limits { iterations: programs, band: 0.3, tolerance: 1e-9 };
+        maxmin::climb(&self.normal.problem, points, Goal::ScaledJacobian { target }, limits, context).stopped
     }
 
     /// Lowers the condition numbers of the good candidates and puts the best first.

@@ -24,17 +24,19 @@ pub(crate) fn untangle_bad(
 ) -> (Vec<usize>, Option<StopReason>) {
     let incidence = Incidence::new(problem);
     let mut bad = bad_cells(problem, points);
-    for rings in [1usize, 2, 3, 4, 6, 8, 12] {
+    for rings in [0usize, 1, 2, 3, 4, 6, 8, 12] {
         if bad.is_empty() || context.stop().is_some() {
             return (bad, context.stop());
         }
-        let parts = patches(problem, &incidence, &bad, rings);
+        // What has grown to more than half of the mesh waits for the whole.
+        let mut parts = patches(problem, &incidence, &bad, rings);
+        parts.retain(|p| 2 * p.problem.hexes.len() <= problem.hexes.len());
+        if parts.is_empty() {
+            break;
+        }
         context.report("untangle patches", rings as u64, None, || {
             format!("{} bad cells, {} patches of {rings} rings", bad.len(), parts.len())
         });
-        if parts.iter().any(|p| 2 * p.problem.hexes.len() > problem.hexes.len()) {
-            break;
-        }
         each(&parts, points, context, |part, points, context| {
             let limits = UntangleLimits { rounds: 60, iterations: 100, extra_rounds: 1, ..UntangleLimits::new() };
             untangle(&part.problem, points, limits, context);
@@ -105,6 +107,18 @@ fn each(
     }
 }
 
+/// Whether the worst cells are few: then patches round them are quicker than barriers over the whole mesh.
+pub(crate) fn is_worst_isolated(problem: &Problem, points: &[Vector]) -> bool {
+    let cells = maxmin::judge(problem, points, 1.0);
+    let limit = seed_limit(cells.worst);
+    50 * cells.each.iter().filter(|c| c.0 <= limit).count() <= problem.hexes.len()
+}
+
+/// Cells up to this value are taken together with the worst.
+fn seed_limit(worst: f64) -> f64 {
+    (1.5 * worst).max(worst + 0.02)
+}
+
 /// Raises the worst cells patch by patch, for meshes too large for one program. All cells must be valid.
 pub(crate) fn climb_worst(
     problem: &Problem,
@@ -126,7 +140,7 @@ pub(crate) fn climb_worst(
         // The worst cells: those below twice the worst, or the worst few, while the patches stay small.
         let mut order: Vec<usize> = (0..problem.hexes.len()).collect();
         order.sort_by(|&a, &b| cells.each[a].0.total_cmp(&cells.each[b].0).then(a.cmp(&b)));
-        let limit = (1.5 * cells.worst).max(cells.worst + 0.02).min(target);
+        let limit = seed_limit(cells.worst).min(target);
         let mut seeds = order.iter().take_while(|&&h| cells.each[h].0 <= limit).count().max(1);
         let rings = 1 + stale;
         let parts = loop {
