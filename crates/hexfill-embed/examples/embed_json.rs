@@ -2,7 +2,8 @@
 //!
 //! Usage: `embed_json FILE [untangle-only|scaled-jacobian|balanced] [starts] [seed]`; the file has `hexes` (8 indices each),
 //! `boundary_points` (for the first vertices) and, if wanted, `start` (a point for every vertex).
-//! With `HEXFILL_OUT=PATH` the points are written there as JSON; with `HEXFILL_STARS=1` all star bounds are printed first.
+//! With `HEXFILL_OUT=PATH` the points are written there as JSON; with `HEXFILL_STARS=1` all star bounds are printed first; with
+//! `HEXFILL_SYMMETRIC=1` the positions share the symmetries of the boundary.
 
 use hexfill_embed::{Objective, Options, embed, star_bounds};
 use hexfill_mesh::{Context, HexMesh};
@@ -25,6 +26,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         Some("balanced") => Objective::Balanced,
         _ => Objective::ScaledJacobian,
     });
+    options.symmetric = std::env::var_os("HEXFILL_SYMMETRIC").is_some();
     options.starts = arguments.get(3).map_or(Ok(0), |s| s.parse())?;
     let seed = arguments.get(4).map_or(Ok(0), |s| s.parse())?;
     let progress = |p: &hexfill_mesh::Progress| eprintln!("{} {} {}", p.stage, p.done, p.message);

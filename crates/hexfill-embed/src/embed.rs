@@ -15,6 +15,7 @@ use crate::raise;
 use crate::random::Random;
 use crate::report::{CellQuality, EmbedReport, Embedding, Objective, Options, is_impossible};
 use crate::star::{self, Star, StarBound};
+use crate::symmetry;
 use crate::tutte;
 use crate::untangle::{UntangleLimits, bad_cells, untangle};
 use crate::vector::{Vector, norm, sub};
@@ -48,7 +49,10 @@ pub fn embed(
     options: &Options,
     context: &Context<'_>,
 ) -> Result<Embedding, EmbedError> {
-    let frame = Normal::new(mesh, boundary_points, start)?;
+    let mut frame = Normal::new(mesh, boundary_points, start)?;
+    if options.symmetric {
+        frame.problem.symmetry = symmetry::find(mesh, &frame.problem, &frame.points);
+    }
     if options.threads == 0 {
         return Ok(frame.run(mesh, start, options, context));
     }
@@ -212,6 +216,7 @@ impl Normal {
             objective: options.objective,
             valid_in_floating_point: bad.is_empty(),
             n_invalid: bad.len(),
+            symmetries: problem.symmetry.as_ref().map_or(1, |s| s.order),
             starts: outcome.starts,
             valid_starts: outcome.valid_starts,
             best_start: outcome.best_start,
@@ -348,9 +353,14 @@ impl Search<'_> {
             }
         }
         let n_hexes = problem.hexes.len();
+        let by_parts = n_hexes > self.options.local_limit || number == 0 && self.start.is_some();
+        if problem.symmetry.is_some() {
+            let x = problem.gather(&points);
+            problem.scatter(&x, &mut points);
+        }
         let mut stopped;
         let mut bad;
-        if n_hexes > self.options.local_limit || number == 0 && self.start.is_some() {
+        if by_parts && problem.symmetry.is_none() {
             (bad, stopped) = local::untangle_bad(problem, &mut points, context);
         } else {
             (bad, stopped) = local::untangle_whole(problem, &mut points, context);
@@ -364,7 +374,7 @@ impl Search<'_> {
                 (points, bad) = (trial, left);
             }
         }
-        if let Some(given) = self.start.filter(|_| number == 0 && !bad.is_empty()) {
+        if let Some(given) = self.start.filter(|_| number == 0 && !bad.is_empty() && problem.symmetry.is_none()) {
             // A start that could not be untangled comes back no worse than it was.
             let rank = |points: &[Vector], bad: usize| (bad, -maxmin::judge(problem, points, 1.0).worst);
             let before = bad_cells(problem, given);
@@ -399,7 +409,8 @@ impl Search<'_> {
         let by_patches = |points: &mut Vec<Vector>| {
             local::climb_worst(problem, points, target, self.options.programs / share, context)
         };
-        if n_hexes > self.options.whole_limit && local::is_worst_isolated(problem, points) {
+        let patchy = n_hexes > self.options.whole_limit && problem.symmetry.is_none();
+        if patchy && local::is_worst_isolated(problem, points) {
             return by_patches(points);
         }
         let limits = raise::Limits { rounds: self.options.programs, iterations: 80 };
@@ -420,7 +431,7 @@ impl Search<'_> {
                 return stopped;
             }
         }
-        if n_hexes > self.options.whole_limit {
+        if patchy {
             return by_patches(points);
         }
         self.climb(points, target, self.options.programs * SMALL / n_hexes / 2, context)

@@ -110,12 +110,10 @@ impl<'p> Energy<'p> {
 
     /// Per number of the variables: an inverse diagonal of the right order for L-BFGS, 1 / sum of 1 / size^2.
     pub(crate) fn inverse_diagonal(&self) -> Vec<f64> {
-        (0..self.problem.free.len())
-            .flat_map(|s| {
-                let sum: f64 = self.problem.places(s).iter().map(|&p| self.sizes[p as usize / 8].powi(-2)).sum();
-                [0.1 / sum; 3]
-            })
-            .collect()
+        self.problem.by_variable(|s| {
+            let sum: f64 = self.problem.places(s).iter().map(|&p| self.sizes[p as usize / 8].powi(-2)).sum();
+            0.1 / sum
+        })
     }
 }
 

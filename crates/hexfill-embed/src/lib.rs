@@ -33,6 +33,7 @@ mod report;
 mod samples;
 mod star;
 mod star_search;
+mod symmetry;
 mod tutte;
 mod untangle;
 mod vector;

@@ -124,7 +124,7 @@ pub(crate) fn climb(
     let mut iterations = 0;
     let mut stopped = None;
     let mut rejected = 0;
-    while iterations < limits.iterations && value < target && radius > 1e-9 && !problem.free.is_empty() {
+    while iterations < limits.iterations && value < target && radius > 1e-9 && problem.n_variables() > 0 {
         stopped = context.stop();
         if stopped.is_some() {
             break;
@@ -147,11 +147,9 @@ pub(crate) fn climb(
             continue;
         }
         let mut trial = points.clone();
-        for (s, &v) in problem.free.iter().enumerate() {
-            for k in 0..3 {
-                trial[v as usize][k] += step.direction[3 * s + k];
-            }
-        }
+        let mut x = problem.gather(points);
+        x.iter_mut().zip(&step.direction).for_each(|(x, d)| *x += d);
+        problem.scatter(&x, &mut trial);
         let trial_cells = match goal {
             Goal::ScaledJacobian { .. } => judge(problem, &trial, value + step.promised + SEEN),
             Goal::Condition { floor } => judge(problem, &trial, floor + SEEN),
@@ -184,21 +182,19 @@ pub(crate) fn climb(
 
 /// Per variable: how far its vertex may move at radius 1, its shortest edge.
 fn reach(problem: &Problem, points: &[Vector]) -> Vec<f64> {
-    (0..problem.free.len())
-        .map(|s| {
-            let mut shortest = f64::INFINITY;
-            for &place in problem.places(s) {
-                let hex = &problem.hexes[place as usize / 8];
-                let corner = place as usize % 8;
-                for [a, b] in FRAME_EDGES {
-                    if a == corner || b == corner {
-                        shortest = shortest.min(norm(sub(points[hex[a] as usize], points[hex[b] as usize])));
-                    }
+    problem.by_variable(|s| {
+        let mut shortest = f64::INFINITY;
+        for &place in problem.places(s) {
+            let hex = &problem.hexes[place as usize / 8];
+            let corner = place as usize % 8;
+            for [a, b] in FRAME_EDGES {
+                if a == corner || b == corner {
+                    shortest = shortest.min(norm(sub(points[hex[a] as usize], points[hex[b] as usize])));
                 }
             }
-            shortest.max(1e-9)
-        })
-        .collect()
+        }
+        shortest.max(1e-9)
+    })
 }
 
 fn linearise(problem: &Problem, points: &[Vector], cells: &Cells, goal: Goal, value: f64, band: f64) -> Vec<Row> {
@@ -220,6 +216,9 @@ fn linearise(problem: &Problem, points: &[Vector], cells: &Cells, goal: Goal, va
     };
     for (hex, (worst, inner)) in cells.each.iter().enumerate() {
         let p = problem.corners_of(hex, points);
+        if problem.symmetry.as_ref().is_some_and(|s| !s.is_first_hex[hex]) {
+            continue;
+        }
         // The inner points move with the cell's minimum, so each step takes the ones seen last.
         let near = if *worst <= scaled_limit { inner.as_slice() } else { &[] };
         for (n, at) in corner_points().chain(near.iter().copied()).enumerate() {
@@ -261,7 +260,7 @@ fn solve(
     curvature: &[(Place, f64)],
 ) -> Option<Step> {
     let n = problem.free.len();
-    let t = 3 * n;
+    let t = problem.n_variables();
     let mut cost = vec![0.0; t + 1];
     cost[t] = -1.0;
     let mut program = Program::new(cost);
@@ -271,8 +270,24 @@ fn solve(
         for (corner, g) in gradient.iter().enumerate() {
             let s = problem.slot[problem.hexes[hex][corner] as usize] as usize;
             if s < n {
-                out.extend((0..3).filter(|&k| g[k] != 0.0).map(|k| (3 * s + k, sign * radius * reach[s] * g[k])));
+                for k in (0..3).filter(|&k| g[k] != 0.0) {
+                    let value = sign * radius * g[k];
+                    match &problem.symmetry {
+                        None => out.push((3 * s + k, value * reach[3 * s + k])),
+                        Some(symmetry) => out.extend(symmetry.expand(s, k).map(|(i, c)| (i, value * c * reach[i]))),
+                    }
+                }
             }
+        }
+        if problem.symmetry.is_some() {
+            // Corners of one orbit share variables.
+            out.sort_by_key(|entry| entry.0);
+            out.dedup_by(|b, a| {
+                a.0 == b.0 && {
+                    a.1 += b.1;
+                    true
+                }
+            });
         }
         out
     };
@@ -295,7 +310,7 @@ fn solve(
     let mut model = Vec::new();
     for &(place, multiplier) in curvature {
         bend(problem, points, place, multiplier, |i, j, value| {
-            let value = value * radius * radius * reach[i / 3] * reach[j / 3];
+            let value = value * radius * radius * reach[i] * reach[j];
             program.curvature(i, j, value);
             model.push((i, j, value));
         });
@@ -311,7 +326,7 @@ fn solve(
         .filter(|(row, m)| **m > 1e-7 && (row.objective == matches!(goal, Goal::ScaledJacobian { .. })))
         .map(|(row, &m)| (row.place, m))
         .collect();
-    let direction = (0..t).map(|i| solution.point[i].clamp(-1.0, 1.0) * radius * reach[i / 3]).collect();
+    let direction = (0..t).map(|i| solution.point[i].clamp(-1.0, 1.0) * radius * reach[i]).collect();
     Some(Step { direction, promised: solution.point[t] - bent, multipliers })
 }
 
@@ -345,7 +360,19 @@ fn bend(problem: &Problem, points: &[Vector], place: Place, multiplier: f64, mut
                         }
                     }
                     if sum != 0.0 {
-                        entry(3 * sa + i, 3 * sb + j, sum);
+                        match &problem.symmetry {
+                            None => entry(3 * sa + i, 3 * sb + j, sum),
+                            Some(symmetry) => {
+                                // As a product of two sums; what lies off the diagonal stands for both orders.
+                                let twice = if (sa, i) == (sb, j) { 1.0 } else { 2.0 };
+                                for (p, x) in symmetry.expand(sa, i) {
+                                    for (q, y) in symmetry.expand(sb, j) {
+                                        let share = if p == q { 1.0 } else { 0.5 };
+                                        entry(p.min(q), p.max(q), sum * twice * share * x * y);
+                                    }
+                                }
+                            }
+                        }
                     }
                 }
             }

@@ -4,6 +4,7 @@
 //! variable, the places `8 * hex + corner` where its vertex occurs, ascending. Sums over a vertex are taken in
 //! that order, whatever the number of threads, so results are the same to the last bit.
 
+use crate::symmetry::{Orbit, Symmetry};
 use crate::vector::Vector;
 use rayon::prelude::*;
 
@@ -24,6 +25,8 @@ pub(crate) struct Problem {
     pub(crate) free: Vec<u32>,
     corner_start: Vec<u32>,
     corners: Vec<u32>,
+    /// If set, the variables are those of the symmetric positions.
+    pub(crate) symmetry: Option<Symmetry>,
 }
 
 impl Problem {
@@ -52,7 +55,7 @@ impl Problem {
             corners[cursor[s as usize] as usize] = place as u32;
             cursor[s as usize] += 1;
         }
-        Self { hexes, n_vertices, slot, free, corner_start, corners }
+        Self { hexes, n_vertices, slot, free, corner_start, corners, symmetry: None }
     }
 
     /// The corners of a hex.
@@ -67,8 +70,16 @@ impl Problem {
         &self.corners[self.corner_start[variable] as usize..self.corner_start[variable + 1] as usize]
     }
 
-    /// Writes variables (three numbers each) into `points`.
+    /// How many numbers the variables are.
+    pub(crate) fn n_variables(&self) -> usize {
+        self.symmetry.as_ref().map_or(3 * self.free.len(), |s| s.n_variables)
+    }
+
+    /// Writes variables (three numbers a free vertex, or those of the symmetric positions) into `points`.
     pub(crate) fn scatter(&self, x: &[f64], points: &mut [Vector]) {
+        if let Some(symmetry) = &self.symmetry {
+            return symmetry.scatter(&self.free, x, points);
+        }
         for (x, &v) in x.chunks_exact(3).zip(&self.free) {
             points[v as usize].copy_from_slice(x);
         }
@@ -76,7 +87,24 @@ impl Problem {
 
     /// The variables of `points`.
     pub(crate) fn gather(&self, points: &[Vector]) -> Vec<f64> {
+        if let Some(symmetry) = &self.symmetry {
+            return symmetry.gather(&self.free, points);
+        }
         self.free.iter().flat_map(|&v| points[v as usize]).collect()
+    }
+
+    /// One number a free vertex, as one a variable.
+    pub(crate) fn by_variable(&self, by_slot: impl Fn(usize) -> f64) -> Vec<f64> {
+        match &self.symmetry {
+            None => (0..self.free.len()).flat_map(|s| [by_slot(s); 3]).collect(),
+            Some(symmetry) => {
+                let one = |o: &Orbit| {
+                    let least = Symmetry::slots(o).map(&by_slot).fold(f64::INFINITY, f64::min);
+                    vec![least; o.n_variables()]
+                };
+                symmetry.orbits.iter().flat_map(one).collect()
+            }
+        }
     }
 
     /// `out[h] = f(h)` for all hexes.
@@ -84,8 +112,17 @@ impl Problem {
         fill(out, f);
     }
 
-    /// Sums, per variable, the gradients in `per_hex` at its places into `out` (three numbers a variable).
+    /// Sums the gradients in `per_hex` by variable into `out`.
     pub(crate) fn sum_at_variables(&self, per_hex: &[(f64, [Vector; 8])], out: &mut [f64]) {
+        if let Some(symmetry) = &self.symmetry {
+            let mut at_slots = vec![0.0; 3 * self.free.len()];
+            self.sum_at_slots(per_hex, &mut at_slots);
+            return symmetry.pull_back(&at_slots, out);
+        }
+        self.sum_at_slots(per_hex, out);
+    }
+
+    fn sum_at_slots(&self, per_hex: &[(f64, [Vector; 8])], out: &mut [f64]) {
         let one = |s: usize, out: &mut [f64]| {
             let mut sum = [0.0; 3];
             for &place in self.places(s) {

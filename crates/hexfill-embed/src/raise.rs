@@ -34,7 +34,7 @@ pub(crate) fn raise(
     limits: Limits,
     context: &Context<'_>,
 ) -> Option<StopReason> {
-    if problem.free.is_empty() {
+    if problem.n_variables() == 0 {
         return None;
     }
     let mut cells = judge(problem, points, 1.0);
@@ -179,19 +179,17 @@ impl Barrier<'_> {
     /// A scaled Jacobian changes by about one over a move of one edge.
     fn inverse_diagonal(&self, points: &[Vector]) -> Vec<f64> {
         let problem = self.problem;
-        (0..problem.free.len())
-            .flat_map(|s| {
-                let mut shortest = f64::INFINITY;
-                for &place in problem.places(s) {
-                    let hex = &problem.hexes[place as usize / 8];
-                    let corner = place as usize % 8;
-                    for n in CORNER_NEIGHBOURS[corner] {
-                        shortest = shortest.min(norm(sub(points[hex[n] as usize], points[hex[corner] as usize])));
-                    }
+        problem.by_variable(|s| {
+            let mut shortest = f64::INFINITY;
+            for &place in problem.places(s) {
+                let hex = &problem.hexes[place as usize / 8];
+                let corner = place as usize % 8;
+                for n in CORNER_NEIGHBOURS[corner] {
+                    shortest = shortest.min(norm(sub(points[hex[n] as usize], points[hex[corner] as usize])));
                 }
-                [0.01 * self.width * shortest * shortest; 3]
-            })
-            .collect()
+            }
+            0.01 * self.width * shortest * shortest
+        })
     }
 }
 

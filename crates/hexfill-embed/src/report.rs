@@ -27,6 +27,9 @@ pub struct Options {
     /// Starts at most; 0 chooses by size: 8 up to 100 hexes, 4 up to 400, and beyond that as many as it takes to find
     /// one that is valid, up to 4 (2 above 5000 hexes). One, if the star bounds say that no placement is valid.
     pub starts: u32,
+    /// Keep to positions with the symmetries of the boundary that are automorphisms of the mesh: fewer variables, a
+    /// symmetric result. Without effect if there are none. The whole mesh is worked on at once, whatever the limits below.
+    pub symmetric: bool,
     /// Worker threads; 0 uses the threads of the surrounding pool.
     pub threads: usize,
     /// Linear programs at most, a start.
@@ -42,6 +45,7 @@ impl Default for Options {
         Self {
             objective: Objective::default(),
             starts: 0,
+            symmetric: false,
             threads: 0,
             programs: 150,
             whole_limit: 400,
@@ -99,6 +103,8 @@ pub struct EmbedReport {
     pub valid_in_floating_point: bool,
     /// Number of cells that are not valid.
     pub n_invalid: usize,
+    /// How many symmetries the positions were made to share; 1 unless asked for.
+    pub symmetries: usize,
     /// Starts made.
     pub starts: u32,
     /// Starts that came out valid.

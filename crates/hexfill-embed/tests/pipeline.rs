@@ -58,6 +58,41 @@ fn the_spindle_with_40_hexes_has_coordinates() {
 }
 
 #[test]
+fn symmetric_positions_are_symmetric_and_as_good() {
+    for (name, order, least) in [("pyramid_36", 4, 0.3162), ("spindle_40", 4, 0.19)] {
+        let sample = Sample::read(name);
+        let mesh = sample.mesh();
+        let mut options = Options::default();
+        options.symmetric = true;
+        options.starts = 2;
+        let done = embed(&mesh, &sample.boundary_points, None, &options, &Context::default()).unwrap();
+        assert_eq!(done.report.symmetries, order, "{name}");
+        let (valid, [lower, _]) = certified(&mesh, &done.points);
+        assert!(valid && lower >= least, "{name} {lower}");
+        assert_boundary_kept(&mesh, &sample.boundary_points, &done.points);
+        // Every automorphism that keeps distances on the boundary keeps all distances.
+        let fixed = mesh.boundary_vertices();
+        let distance =
+            |v: usize, w: usize| (0..3).map(|k| (done.points[v][k] - done.points[w][k]).powi(2)).sum::<f64>().sqrt();
+        let n = done.points.len();
+        let keeps = |image: &[hexfill_mesh::VertexId], among: &dyn Fn(usize) -> bool| {
+            (0..n).filter(|&v| among(v)).all(|v| {
+                (0..v)
+                    .filter(|&w| among(w))
+                    .all(|w| (distance(v, w) - distance(image[v].index(), image[w].index())).abs() < 1e-9)
+            })
+        };
+        let symmetric = hexfill_mesh::hex_automorphisms(&mesh)
+            .unwrap()
+            .into_iter()
+            .filter(|a| keeps(&a.vertices, &|v| fixed[v]))
+            .map(|a| assert!(keeps(&a.vertices, &|_| true), "{name}"))
+            .count();
+        assert_eq!(symmetric, order, "{name}");
+    }
+}
+
+#[test]
 fn balanced_keeps_most_of_the_optimum_and_lowers_the_condition() {
     let sample = Sample::read("refine_9to1_13");
     let mesh = sample.mesh();

@@ -28,6 +28,9 @@ pub struct EmbedArgs {
     /// Do not begin with the interior positions of the file.
     #[arg(long)]
     fresh: bool,
+    /// Keep the symmetries of the boundary that the mesh has, too: a symmetric result from fewer variables.
+    #[arg(long)]
+    symmetric: bool,
     /// Write nothing unless det J > 0 is certified in every hex.
     #[arg(long)]
     require_valid: bool,
@@ -75,6 +78,7 @@ pub fn run(args: &EmbedArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Re
         ObjectiveArg::Untangle => Objective::UntangleOnly,
     });
     options.starts = args.starts;
+    options.symmetric = args.symmetric;
     let start = (!args.fresh).then_some(data.points.as_slice());
     let made = embed(&mesh, &data.points, start, &options, ctx)?;
     let judged = Judged::connectivity(mesh.n_vertices(), &data.hexes).with_points(&made.points);
