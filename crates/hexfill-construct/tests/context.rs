@@ -115,7 +115,7 @@ fn random_voxel_surfaces() {
     let mut random = Random::new(3);
     let mut n = 0;
     while n < wanted {
-        let mut filled = vec![true; 125];
+        let mut filled = [true; 125];
         let at = |p: [usize; 3]| p[0] + 5 * (p[1] + 5 * p[2]);
         for _ in 0..random.below(5) {
             let (axis, u, v) = (random.below(3), random.below(5), random.below(5));

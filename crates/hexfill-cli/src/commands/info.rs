@@ -3,14 +3,18 @@
 use crate::console::Console;
 use crate::exit::Exit;
 use crate::files;
+use anyhow::bail;
 use hexfill::construct::{Existence, existence};
 use hexfill::io::{Format, MeshData};
 use hexfill::mesh::{
-    HexMesh, QuadSurface, bipartition, chords, hex_signature, key, sheets, surface_automorphisms, surface_signature,
+    HexMesh, QuadSurface, bipartition, chords, hex_signature, improper_pairs, key, sheets, surface_automorphisms,
+    surface_signature,
 };
 use hexfill::{Problem, check_fillable};
 use serde::Serialize;
 use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::io::Write as _;
 
 /// Flags of `info`.
 #[derive(clap::Args)]
@@ -20,6 +24,9 @@ pub struct InfoArgs {
     /// Format of the input.
     #[arg(long, value_name = "FORMAT", value_parser = files::parse_format)]
     from: Option<Format>,
+    /// Where an odd cycle bounds inside, so that no hex mesh exists: write its edges, as lines (.obj) or as vertex pairs (.txt).
+    #[arg(long, value_name = "FILE")]
+    cycle: Option<String>,
 }
 
 #[derive(Serialize)]
@@ -29,6 +36,8 @@ struct SurfaceInfo {
     vertices: usize,
     edges: usize,
     components: usize,
+    /// Quads and genus of each component, where there are several.
+    parts: Vec<PartInfo>,
     genus: u64,
     euler: i64,
     bipartite: bool,
@@ -38,11 +47,20 @@ struct SurfaceInfo {
     because: String,
     /// The odd cycle that bounds inside, if that is why there is none.
     bounding_cycle: Option<Vec<[u32; 2]>>,
+    /// How many pairs of quads share more than a vertex or an edge, and the first ones.
+    improper_pairs: usize,
+    first_improper_pairs: Vec<[u32; 2]>,
     degrees: BTreeMap<u32, usize>,
     chords: Vec<ChordInfo>,
     key: String,
     automorphisms: Option<usize>,
     signature: Option<String>,
+}
+
+#[derive(Serialize)]
+struct PartInfo {
+    quads: usize,
+    genus: u64,
 }
 
 #[derive(Serialize)]
@@ -75,11 +93,21 @@ const SIGNATURE_LIMIT: usize = 20_000;
 
 /// Describes a surface or a mesh.
 pub fn run(args: &InfoArgs, console: &Console) -> anyhow::Result<Exit> {
+    if let Some(file) = &args.cycle {
+        files::check_folder(file)?;
+        if !["obj", "txt"].iter().any(|e| file.to_ascii_lowercase().ends_with(&format!(".{e}"))) {
+            bail!("{file}: the edges of a cycle are written as .obj (lines) or .txt (vertex pairs); give such a name");
+        }
+        files::check_distinct(&[&args.input, file])?;
+    }
     let problem = if hexfill::is_named(&args.input) {
         files::load_problem(&args.input, None)?
     } else {
         let data = files::read_data(&args.input, args.from)?;
         if !data.hexes.is_empty() {
+            if args.cycle.is_some() {
+                bail!("{}: --cycle is about surfaces; this is a hex mesh", args.input);
+            }
             return mesh_info(&data, console);
         }
         Problem::from_data(&args.input, &data)?
@@ -93,7 +121,34 @@ pub fn run(args: &InfoArgs, console: &Console) -> anyhow::Result<Exit> {
     } else {
         print_surface(&info, console)?;
     }
+    if let Some(file) = &args.cycle {
+        match &info.bounding_cycle {
+            Some(cycle) => {
+                write_cycle(file, cycle, problem.points.as_deref().unwrap_or(&[]))?;
+                console.say(format!("wrote {file}: {} edges", cycle.len()));
+            }
+            None => console.note(format!("no odd cycle is known to bound inside; {file} was not written")),
+        }
+    }
     Ok(Exit::Done)
+}
+
+/// The edges of a cycle, 0-based pairs a line, or with all points of the surface as Wavefront lines.
+fn write_cycle(file: &str, cycle: &[[u32; 2]], points: &[[f64; 3]]) -> anyhow::Result<()> {
+    let mut text = String::new();
+    if file.to_ascii_lowercase().ends_with(".txt") {
+        for [a, b] in cycle {
+            let _ = writeln!(text, "{a} {b}");
+        }
+    } else {
+        for [x, y, z] in points {
+            let _ = writeln!(text, "v {x} {y} {z}");
+        }
+        for [a, b] in cycle {
+            let _ = writeln!(text, "l {} {}", a + 1, b + 1);
+        }
+    }
+    files::write_file(file, |out| out.write_all(text.as_bytes()))
 }
 
 /// Whether a hex mesh exists, why, and the cycle that forbids it.
@@ -110,14 +165,26 @@ fn verdict(surface: &QuadSurface, points: Option<&[[f64; 3]]>) -> (&'static str,
             let because = format!("an odd cycle of {} edges bounds inside: {}{more}", cycle.len(), shown.join(" "));
             ("none", because, Some(edges))
         }
+        Existence::OddSolid { components, given } => {
+            let names: Vec<String> = components.iter().map(ToString::to_string).collect();
+            let (noun, bound) = if names.len() == 1 { ("component", "bounds") } else { ("components", "bound") };
+            let because = format!(
+                "{noun} {} {bound} one solid with {given} quads, an odd number: every hex mesh of a connected solid has an even number of boundary quads (Thurston 1993)",
+                names.join(", ")
+            );
+            ("none", because, None)
+        }
         Existence::Unknown { reason } => ("unknown", reason, None),
-        other => ("none", format!("{other:?}"), None),
+        Existence::OddQuads { given } => ("none", format!("the surface has {given} quads, an odd number"), None),
+        Existence::ImproperQuads { pairs } => ("none", format!("quads share too much: {pairs}"), None),
+        // A verdict of a later version of the library.
+        other => ("unknown", format!("{other:?}"), None),
     }
 }
 
 fn describe(surface: &QuadSurface, points: Option<&[[f64; 3]]>) -> SurfaceInfo {
     let small = surface.n_quads() <= SIGNATURE_LIMIT;
-    let parts = bipartition(surface);
+    let colours = bipartition(surface);
     let (hex_mesh, because, bounding_cycle) = verdict(surface, points);
     let mut degrees = BTreeMap::new();
     for v in 0..surface.n_vertices() {
@@ -127,19 +194,24 @@ fn describe(surface: &QuadSurface, points: Option<&[[f64; 3]]>) -> SurfaceInfo {
         }
     }
     let chords = chords(surface);
+    let pairs = improper_pairs(surface);
+    let parts = if surface.n_components() > 1 { surface.split_components() } else { Vec::new() };
     SurfaceInfo {
         kind: "surface",
         quads: surface.n_quads(),
         vertices: surface.n_used_vertices(),
         edges: surface.n_edges(),
         components: surface.n_components(),
+        parts: parts.iter().map(|(s, _, _)| PartInfo { quads: s.n_quads(), genus: s.genus() }).collect(),
         genus: surface.genus(),
         euler: surface.euler_characteristic(),
-        bipartite: parts.is_ok(),
-        odd_cycle: parts.err().map(|c| c.vertices.iter().map(|v| v.0).collect()),
+        bipartite: colours.is_ok(),
+        odd_cycle: colours.err().map(|c| c.vertices.iter().map(|v| v.0).collect()),
         hex_mesh,
         because,
         bounding_cycle,
+        improper_pairs: pairs.count,
+        first_improper_pairs: pairs.first.iter().map(|p| p.quads.map(|q| q.0)).collect(),
         degrees,
         chords: chords
             .iter()
@@ -161,6 +233,12 @@ fn print_surface(info: &SurfaceInfo, console: &Console) -> anyhow::Result<()> {
         "closed quad surface, {shape}: {} quads, {} vertices, {} edges, Euler characteristic {}",
         info.quads, info.vertices, info.edges, info.euler
     ))?;
+    for (c, part) in info.parts.iter().enumerate().take(20) {
+        console.print(format!("component {c}: {} quads, genus {}", part.quads, part.genus))?;
+    }
+    if info.parts.len() > 20 {
+        console.print(format!("... and {} more components", info.parts.len() - 20))?;
+    }
     let degrees: Vec<String> = info.degrees.iter().map(|(d, n)| format!("{n} of degree {d}")).collect();
     console.print(format!("vertices: {}", degrees.join(", ")))?;
     let chords: Vec<String> = info

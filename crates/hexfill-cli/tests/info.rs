@@ -1,0 +1,121 @@
+//! `hexfill info` on surfaces: whether a hex mesh exists, why not, and the certificate as a file.
+
+use assert_cmd::Command;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+fn hexfill(dir: &Path, args: &[&str]) -> (i32, String, String) {
+    let out = Command::cargo_bin("hexfill").unwrap().current_dir(dir).args(args).output().unwrap();
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+    (out.status.code().expect("not killed"), text(out.stdout), text(out.stderr))
+}
+
+fn info(dir: &Path, file: &str) -> serde_json::Value {
+    let (code, out, err) = hexfill(dir, &["info", file, "--json"]);
+    assert_eq!(code, 0, "{err}");
+    serde_json::from_str(&out).unwrap_or_else(|e| panic!("{e}: {out}"))
+}
+
+/// A torus of `n` quads round the tube and `m` round the axis as OBJ text; `first` vertices come before it.
+fn torus(n: usize, m: usize, r: f64, x: f64, outward: bool, first: usize) -> String {
+    let turn = std::f64::consts::TAU;
+    let mut text = String::new();
+    for j in 0..m {
+        for i in 0..n {
+            let (a, b) = (turn * i as f64 / n as f64, turn * j as f64 / m as f64);
+            let d = 3.0 + r * a.cos();
+            text += &format!("v {} {} {}\n", x + d * b.cos(), d * b.sin(), r * a.sin());
+        }
+    }
+    for j in 0..m {
+        for i in 0..n {
+            let at = |i: usize, j: usize| first + (j % m) * n + i % n + 1;
+            let mut q = [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)];
+            if !outward {
+                q.reverse();
+            }
+            text += &format!("f {} {} {} {}\n", q[0], q[1], q[2], q[3]);
+        }
+    }
+    text
+}
+
+#[test]
+fn the_cycle_that_bounds_is_named_and_exported() {
+    let dir = tempfile::tempdir().unwrap();
+    let at = dir.path();
+    std::fs::write(at.join("odd.obj"), torus(5, 4, 1.0, 0.0, true, 0)).unwrap();
+    let found = info(at, "odd.obj");
+    assert_eq!(found["hex_mesh"], "none");
+    let cycle = found["bounding_cycle"].as_array().unwrap();
+    assert_eq!(cycle.len() % 2, 1);
+    let (code, out, err) = hexfill(at, &["info", "odd.obj", "--cycle", "cycle.txt"]);
+    assert_eq!(code, 0);
+    assert!(out.contains("none exists: an odd cycle of") && err.contains("wrote cycle.txt"), "{out}{err}");
+    let text = std::fs::read_to_string(at.join("cycle.txt")).unwrap();
+    let edges: Vec<Vec<usize>> = text.lines().map(|l| l.split(' ').map(|w| w.parse().unwrap()).collect()).collect();
+    assert_eq!(edges.len(), cycle.len());
+    let mut degree: BTreeMap<usize, usize> = BTreeMap::new();
+    edges.iter().flatten().for_each(|&v| *degree.entry(v).or_default() += 1);
+    assert!(degree.values().all(|d| d % 2 == 0));
+    // As lines: the same edges, 1-based, with the surface's points.
+    hexfill(at, &["info", "odd.obj", "--cycle", "cycle.obj"]);
+    let text = std::fs::read_to_string(at.join("cycle.obj")).unwrap();
+    assert_eq!(text.lines().filter(|l| l.starts_with("v ")).count(), 20);
+    let lines: Vec<String> = edges.iter().map(|e| format!("l {} {}", e[0] + 1, e[1] + 1)).collect();
+    assert_eq!(text.lines().filter(|l| l.starts_with("l ")).collect::<Vec<_>>(), lines);
+    // The construction refuses with a certificate of its own.
+    let (code, _, err) = hexfill(at, &["fill", "odd.obj", "-o", "m.vtk"]);
+    assert!(code == 2 && err.contains("odd cycle") && !at.join("m.vtk").exists(), "{err}");
+}
+
+#[test]
+fn an_odd_cycle_that_does_not_bound_is_harmless() {
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("axis.obj"), torus(4, 5, 1.0, 0.0, true, 0)).unwrap();
+    let found = info(dir.path(), "axis.obj");
+    assert_eq!((&found["hex_mesh"], &found["bipartite"]), (&"exists".into(), &false.into()));
+    let (code, _, err) = hexfill(dir.path(), &["info", "axis.obj", "--cycle", "c.txt"]);
+    assert!(code == 0 && err.contains("c.txt was not written"), "{err}");
+    assert!(!dir.path().join("c.txt").exists());
+    for (file, word) in [("c.vtk", ".txt"), ("no/c.txt", "does not exist"), ("axis.obj", "same file")] {
+        let (code, out, err) = hexfill(dir.path(), &["info", "axis.obj", "--cycle", file]);
+        assert!(code == 2 && out.is_empty() && err.contains(word), "{err}");
+    }
+    let (code, _, err) = hexfill(dir.path(), &["info", "axis.obj", "--json"]);
+    assert_eq!(code, 0, "{err}");
+}
+
+#[test]
+fn odd_numbers_of_quads_are_counted_by_solid() {
+    let dir = tempfile::tempdir().unwrap();
+    let at = dir.path();
+    std::fs::write(at.join("odd.obj"), torus(3, 5, 1.0, 0.0, true, 0)).unwrap();
+    let found = info(at, "odd.obj");
+    assert!(found["hex_mesh"] == "none" && found["because"].as_str().unwrap().contains("15 quads"));
+    let apart = torus(3, 5, 1.0, 0.0, true, 0) + &torus(3, 5, 1.0, 20.0, true, 15);
+    std::fs::write(at.join("apart.obj"), apart).unwrap();
+    let found = info(at, "apart.obj");
+    assert!(found["hex_mesh"] == "none" && found["because"].as_str().unwrap().contains("component 0"), "{found}");
+    assert_eq!(found["parts"].as_array().unwrap().len(), 2);
+    // One inside the other: 40 quads of one solid, and it can be filled.
+    let nested = torus(5, 5, 2.0, 0.0, true, 0) + &torus(3, 5, 0.7, 0.0, false, 25);
+    std::fs::write(at.join("nested.obj"), nested).unwrap();
+    assert_eq!(info(at, "nested.obj")["hex_mesh"], "exists");
+    let (code, _, err) = hexfill(at, &["fill", "nested.obj", "-o", "m.vtk", "--no-embed"]);
+    assert_eq!(code, 0, "{err}");
+    let (code, _, err) = hexfill(at, &["check", "m.vtk", "--surface", "nested.obj"]);
+    assert!(code != 2, "{err}");
+}
+
+#[test]
+fn quads_that_share_too_much_are_listed() {
+    let dir = tempfile::tempdir().unwrap();
+    let text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nv 0.4 0.4 1\nv 0.6 0.6 1\n\
+        f 1 5 8 4\nf 2 3 7 6\nf 1 2 6 5\nf 4 8 7 3\nf 1 4 3 2\nf 5 6 7 9\nf 5 9 7 10\nf 5 10 7 8\n";
+    std::fs::write(dir.path().join("fan.obj"), text).unwrap();
+    let found = info(dir.path(), "fan.obj");
+    assert_eq!(found["hex_mesh"], "none");
+    assert_eq!(found["improper_pairs"], 3);
+    assert_eq!(found["first_improper_pairs"][0], serde_json::json!([5, 6]));
+}
