@@ -294,6 +294,8 @@ impl Search<'_> {
         let starts = match (self.options.starts, n_hexes) {
             (0, 0..=100) => 8,
             (0, 101..=5000) => 4,
+            // What a given start does not lead to is out of reach of means of neighbours.
+            (0, _) if self.start.is_some() => 1,
             (0, _) => 2,
             (n, _) => n,
         };
@@ -364,15 +366,6 @@ impl Search<'_> {
             (bad, stopped) = local::untangle_bad(problem, &mut points, context);
         } else {
             (bad, stopped) = local::untangle_whole(problem, &mut points, context);
-        }
-        if !bad.is_empty() && n_hexes <= SMALL && stopped.is_none() && self.upper_bound > 0.0 {
-            // Where the energy is stuck, programs that raise the worst corner may still get through.
-            let mut trial = points.clone();
-            stopped = self.climb(&mut trial, self.upper_bound.min(0.02), 40, context);
-            let left = bad_cells(problem, &trial);
-            if left.len() < bad.len() {
-                (points, bad) = (trial, left);
-            }
         }
         if let Some(given) = self.start.filter(|_| number == 0 && !bad.is_empty() && problem.symmetry.is_none()) {
             // A start that could not be untangled comes back no worse than it was.

@@ -16,6 +16,12 @@ use rayon::prelude::*;
 /// Cells in a patch at most when it is to climb: the linear programs of larger ones are slow.
 const CLIMB_CELLS: usize = 600;
 
+/// Hexes times iterations that untangling all at once may take, for each energy.
+const WHOLE_WORK: usize = 50_000_000;
+
+/// Meshes with more hexes than this get the first energy only.
+const ONE_ENERGY: usize = 5000;
+
 /// Untangles where needed. Returns the cells still bad, ascending, and why it stopped.
 pub(crate) fn untangle_bad(
     problem: &Problem,
@@ -59,15 +65,19 @@ pub(crate) fn untangle_whole(
     let start = points.to_vec();
     let mut best: Option<(Vec<usize>, Vec<Vector>)> = None;
     let mut stopped = None;
+    // A bound on the work that does not look at the clock: some minutes on the largest meshes.
+    let total = (WHOLE_WORK / problem.hexes.len()).max(1000);
     for volume_weight in [0.0, 1.0] {
         let mut trial = start.clone();
-        let done = untangle(problem, &mut trial, UntangleLimits { volume_weight, ..UntangleLimits::new() }, context);
+        let limits = UntangleLimits { volume_weight, total, ..UntangleLimits::new() };
+        let done = untangle(problem, &mut trial, limits, context);
         let bad = bad_cells(problem, &trial);
         stopped = done.stopped;
         if best.as_ref().is_none_or(|(least, _)| bad.len() < least.len()) {
             best = Some((bad, trial));
         }
-        if stopped.is_some() || best.as_ref().is_some_and(|(bad, _)| bad.is_empty()) {
+        let done = best.as_ref().is_some_and(|(bad, _)| bad.is_empty());
+        if stopped.is_some() || done || problem.hexes.len() > ONE_ENERGY {
             break;
         }
     }

@@ -25,7 +25,7 @@ pub struct Options {
     /// What to strive for.
     pub objective: Objective,
     /// Starts at most; 0 chooses by size: 8 up to 100 hexes, 4 up to 400, and beyond that as many as it takes to find
-    /// one that is valid, up to 4 (2 above 5000 hexes). One, if the star bounds say that no placement is valid.
+    /// one that is valid, up to 4 (above 5000 hexes 2, or only the one given). One, if the star bounds say that no placement is valid.
     pub starts: u32,
     /// Keep to positions with the symmetries of the boundary that are automorphisms of the mesh: fewer variables, a
     /// symmetric result. Without effect if there are none. The whole mesh is worked on at once, whatever the limits below.

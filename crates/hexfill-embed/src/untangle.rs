@@ -22,6 +22,8 @@ pub(crate) struct UntangleLimits {
     pub(crate) rounds: usize,
     /// L-BFGS iterations per value of eps.
     pub(crate) iterations: usize,
+    /// L-BFGS iterations in all.
+    pub(crate) total: usize,
     /// Rounds to go on once everything is positive: further shape improvement.
     pub(crate) extra_rounds: usize,
     /// Give up after so many rounds with neither fewer bad cells nor a better smallest determinant.
@@ -33,7 +35,7 @@ pub(crate) struct UntangleLimits {
 impl UntangleLimits {
     /// The usual limits, shapes only.
     pub(crate) const fn new() -> Self {
-        Self { rounds: 100, iterations: 200, extra_rounds: 0, patience: 15, volume_weight: 0.0 }
+        Self { rounds: 100, iterations: 200, total: usize::MAX, extra_rounds: 0, patience: 15, volume_weight: 0.0 }
     }
 }
 
@@ -58,7 +60,7 @@ pub(crate) fn untangle(
     energy.epsilon = first_epsilon(smallest);
     let mut positive_rounds = 0;
     let mut best = (usize::MAX, f64::NEG_INFINITY);
-    let mut stale = 0;
+    let (mut stale, mut spent) = (0, 0);
     for round in 0..limits.rounds {
         let before = energy.evaluate(points, &mut gradient);
         let diagonal = energy.inverse_diagonal();
@@ -74,7 +76,8 @@ pub(crate) fn untangle(
             },
             |_, _| {
                 stopped = context.stop();
-                stopped.is_some()
+                spent += 1;
+                stopped.is_some() || spent >= limits.total
             },
         );
         problem.scatter(&x, points);
@@ -94,6 +97,9 @@ pub(crate) fn untangle(
         }
         if stopped.is_some() {
             return Untangled { stopped };
+        }
+        if spent >= limits.total {
+            break;
         }
         let now = (energy.n_not_positive(), smallest);
         if now.0 < best.0 || now.0 == best.0 && now.1 > best.1 + 0.01 * best.1.abs() {

@@ -71,12 +71,15 @@ pub struct FillArgs {
     /// else embeddable].
     #[arg(long, value_enum)]
     cells: Option<CellsArg>,
+    /// Make a constructed mesh smaller (see `hexfill simplify`); done by itself with --no-embed and --time-limit.
+    #[arg(long)]
+    simplify: bool,
     /// Do not embed: interior vertices get start positions, and geometry is not judged.
     #[arg(long)]
     no_embed: bool,
-    /// How long the embedding of one mesh may take.
-    #[arg(long, default_value = "60s", value_name = "TIME", value_parser = files::parse_duration)]
-    embed_limit: Duration,
+    /// How long the embedding of one mesh may take [default: as long as its bounded work takes].
+    #[arg(long, value_name = "TIME", value_parser = files::parse_duration)]
+    embed_limit: Option<Duration>,
     /// Write nothing unless det J > 0 is certified in every hex.
     #[arg(long, conflicts_with = "no_embed")]
     require_valid: bool,
@@ -166,6 +169,7 @@ pub fn run(args: &FillArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Res
             None if args.no_embed => CellChoice::Fewest,
             None => CellChoice::Embeddable,
         },
+        simplify: simplification(args, ctx),
         growth: GrowOptions { cap: args.cap, width: args.width.max(1) },
     };
     let result = hexfill::fill(&problem, &options, ctx)?;
@@ -227,6 +231,17 @@ pub fn run(args: &FillArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Res
     Ok(Exit::of_stop(result.stop, if all_valid && enough { Exit::Done } else { Exit::No }))
 }
 
+/// Whether and how a construction is made smaller: as long as the deadline allows, or by a fixed number of balls. A smaller mesh
+/// is harder to embed, so it must be asked for where positions are wanted.
+fn simplification(args: &FillArgs, ctx: &Context<'_>) -> Option<hexfill::SimplifyOptions> {
+    let wanted = args.simplify || args.no_embed && ctx.deadline.is_some();
+    let balls = if ctx.deadline.is_some() { u64::MAX } else { SIMPLIFY_BALLS };
+    wanted.then(|| hexfill::SimplifyOptions::default().with_balls(balls))
+}
+
+/// Balls of `--simplify` without a time limit.
+const SIMPLIFY_BALLS: u64 = 200_000;
+
 /// Where the tetrahedra of an interior that is not a ball come from.
 fn interior(args: &FillArgs) -> anyhow::Result<InteriorFrom> {
     if let Some(file) = &args.tets {
@@ -247,7 +262,7 @@ fn interior(args: &FillArgs) -> anyhow::Result<InteriorFrom> {
 /// Embeds a mesh, or gives it start positions.
 fn position(args: &FillArgs, filled: &Filled, boundary: &[[f64; 3]], ctx: &Context<'_>) -> Placed {
     let options = hexfill::embed::Options::default();
-    let limited = ctx.with_time_limit(args.embed_limit);
+    let limited = args.embed_limit.map_or(*ctx, |limit| ctx.with_time_limit(limit));
     hexfill::place(filled, boundary, (!args.no_embed).then_some(&options), &limited)
 }
 
