@@ -106,6 +106,11 @@ impl Atlas {
         &self.index[start..start + len]
     }
 
+    /// The states whose class has this name, fewest hexes first; a hash only points.
+    pub(crate) fn states_of(&self, class: u128) -> &[u32] {
+        self.states_with(short_hash(class))
+    }
+
     /// The flips that lead from the cube to a state.
     pub fn flips_to(&self, mut state: u32) -> Vec<Flip> {
         let mut flips = Vec::new();

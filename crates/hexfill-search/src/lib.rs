@@ -8,6 +8,7 @@ mod cavity;
 mod flip;
 mod grow;
 mod inward;
+mod simplify;
 
 pub use atlas::{Atlas, AtlasStats, ClassStats};
 pub use atlas_file::{AtlasError, GrowthLog};
@@ -16,3 +17,4 @@ pub use cavity::{Cavity, MAX_QUADS, MAX_VERTICES, Pairs};
 pub use flip::{Flip, FlipKind, Placement, apply, is_legal, legal_flips, place};
 pub use grow::{GrowOptions, Growth, LevelReport, MAX_CAP};
 pub use inward::{FillOptions, FillOutcome, Filling, fill_from_atlas};
+pub use simplify::{Simplified, SimplifyOptions, SimplifyReport, simplification_atlas, simplify};
