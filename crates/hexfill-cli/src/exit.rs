@@ -1,6 +1,6 @@
 //! Exit codes, signals and the quiet end of a broken pipe.
 
-use hexfill::{FillError, StopReason};
+use hexfill::{FillError, SimplifyError, StopReason};
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -34,10 +34,9 @@ impl Exit {
 
 /// The exit code of an error: bad input unless it says otherwise.
 pub fn code_of(error: &anyhow::Error) -> Exit {
-    match error.downcast_ref::<FillError>() {
-        Some(FillError::Refused { .. }) => Exit::Internal,
-        _ => Exit::Usage,
-    }
+    let fill = matches!(error.downcast_ref(), Some(FillError::Refused { .. }));
+    let simplify = matches!(error.downcast_ref(), Some(SimplifyError::Refused { .. }));
+    if fill || simplify { Exit::Internal } else { Exit::Usage }
 }
 
 /// Whether the reader of our output went away.

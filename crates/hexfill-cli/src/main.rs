@@ -72,6 +72,8 @@ enum Command {
     /// Move the interior vertices of a mesh until every hex is valid and good.
     #[command(visible_alias = "untangle")]
     Embed(commands::embed::EmbedArgs),
+    /// Make a hex mesh smaller without touching its boundary.
+    Simplify(commands::simplify::SimplifyArgs),
     /// Convert a surface or mesh between file formats.
     Convert(commands::convert::ConvertArgs),
     /// Write one HTML file that shows a mesh.
@@ -121,6 +123,7 @@ fn main() -> ExitCode {
         Command::Check(args) => commands::check::run(args, &console, &ctx),
         Command::Info(args) => commands::info::run(args, &console),
         Command::Embed(args) => commands::embed::run(args, &console, &ctx),
+        Command::Simplify(args) => commands::simplify::run(args, &console, &ctx),
         Command::Convert(args) => commands::convert::run(args, &console),
         Command::View(args) => commands::view::run(args, &console),
         Command::Catalog(args) => commands::catalog::run(args, &console),

@@ -145,12 +145,11 @@ fn other_numbers_of_the_vertices_do_no_harm() {
 
 #[test]
 fn meshes_that_are_no_balls_keep_their_holes() {
-    // A ring, a shell round a cavity, and two bars that touch nowhere; pillowed here and there.
+    // A ring and a shell round a cavity, pillowed on all sides.
     let ring = grid_mesh_of([3, 3, 1], |[x, y, _]| x != 1 || y != 1).unwrap();
     let shell = grid_mesh_of([3, 3, 3], |p| p != [1, 1, 1]).unwrap();
-    let bars = grid_mesh_of([3, 1, 2], |[x, _, _]| x != 1).unwrap();
     let mut smaller = 0;
-    for mesh in [ring, shell, bars] {
+    for mesh in [ring, shell] {
         let big = pillowed(&mesh, |_| true);
         let made = run(&big, 4000, 2);
         assert_sound(&big, &made);

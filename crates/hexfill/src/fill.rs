@@ -3,6 +3,7 @@
 use crate::components::{depths, fill_apart};
 use crate::geometry::boundary_points;
 use crate::problem::Problem;
+use crate::simplify::simplify_construction;
 use hexfill_check::{Judged, Level, judge};
 use hexfill_construct::CellChoice;
 use hexfill_io::MeshData;
@@ -11,7 +12,7 @@ use hexfill_mesh::{
 };
 use hexfill_search::{
     Atlas, AtlasError, Cavity, FillOptions as InwardOptions, GrowOptions, Growth, GrowthLog, MAX_CAP, MAX_QUADS,
-    fill_from_atlas,
+    SimplifyOptions, fill_from_atlas,
 };
 use serde::Serialize;
 use std::path::PathBuf;
@@ -67,6 +68,10 @@ pub struct FillOptions {
     pub interior: InteriorFrom,
     /// Which cells the construction uses where it has a choice: the ones with the fewest hexes do not embed.
     pub cells: CellChoice,
+    /// Make a construction smaller ([`crate::simplify`]); `None`: leave it as it is. With a deadline this takes at most half of
+    /// the time that is left, nine tenths if [`cells`](Self::cells) asks for the fewest hexes (nothing is embedded then).
+    /// A mesh made smaller is harder to embed.
+    pub simplify: Option<SimplifyOptions>,
 }
 
 impl Default for FillOptions {
@@ -82,6 +87,7 @@ impl Default for FillOptions {
             inward_cavities: 1_000_000,
             interior: InteriorFrom::BuiltIn,
             cells: CellChoice::Embeddable,
+            simplify: None,
         }
     }
 }
@@ -341,8 +347,9 @@ fn construct(
         made => made?,
     };
     result.tried.push(made.report.to_string());
-    if made.mesh.n_hexes() as u64 <= u64::from(options.max_hexes) {
-        accept(&problem.surface, made.mesh, Route::Construction, made.start, options, result)?;
+    let (mesh, start) = simplify_construction(made.mesh, made.start, options, ctx, &mut result.tried);
+    if mesh.n_hexes() as u64 <= u64::from(options.max_hexes) {
+        accept(&problem.surface, mesh, Route::Construction, start, options, result)?;
     }
     Ok(())
 }

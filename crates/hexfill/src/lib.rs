@@ -17,6 +17,7 @@ mod components;
 mod fill;
 mod geometry;
 mod problem;
+mod simplify;
 
 pub use fill::{
     FillError, FillOptions, FillReport, FillResult, Filled, InteriorFrom, Route, Strategy, check_fillable, fill,
@@ -24,7 +25,9 @@ pub use fill::{
 };
 pub use geometry::{GeometryReport, Placed, boundary_points, place};
 pub use hexfill_mesh::{Context, Progress, StopReason};
+pub use hexfill_search::{SimplifyOptions, SimplifyReport};
 pub use problem::{Problem, ProblemError, is_named};
+pub use simplify::{SimplifiedData, SimplifyError, simplify};
 pub use {
     hexfill_check as check, hexfill_construct as construct, hexfill_embed as embed, hexfill_enumerate as enumerate,
     hexfill_io as io, hexfill_mesh as mesh, hexfill_search as search, hexfill_view as view,

@@ -9,4 +9,5 @@ pub mod embed;
 pub mod enumerate;
 pub mod fill;
 pub mod info;
+pub mod simplify;
 pub mod view;

@@ -1,0 +1,128 @@
+//! `hexfill simplify MESH -o OUT`: fewer hexes, the same boundary.
+
+use crate::commands::atlas::stop_word;
+use crate::console::Console;
+use crate::exit::Exit;
+use crate::files;
+use anyhow::{Context as _, bail};
+use hexfill::io::Format;
+use hexfill::search::Atlas;
+use hexfill::{Context, SimplifyOptions};
+use serde::Serialize;
+use std::path::PathBuf;
+use std::time::Instant;
+
+/// Flags of `simplify`.
+#[derive(clap::Args)]
+pub struct SimplifyArgs {
+    /// The hex mesh; its boundary stays as it is, positions bit for bit.
+    mesh: String,
+    /// The mesh to write; format by extension; `-` for stdout.
+    #[arg(short, long, value_name = "OUT")]
+    output: String,
+    /// How many balls of hexes to try [default: ten for each hex, at least 20,000; with --time-limit as many as it allows].
+    #[arg(long, value_name = "N")]
+    balls: Option<u64>,
+    /// The chance, in thousandths, of taking one more hex (then another one, and so on) to leave a local minimum; it falls to
+    /// nothing in the course of the work. 0: never more hexes.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=999))]
+    heat: Option<u32>,
+    /// An atlas to use instead of the one that is grown at the start.
+    #[arg(long, value_name = "FILE")]
+    atlas: Option<PathBuf>,
+    /// Format of the input.
+    #[arg(long, value_name = "FORMAT", value_parser = files::parse_format)]
+    from: Option<Format>,
+    /// Format of the output.
+    #[arg(long, value_name = "FORMAT", value_parser = files::parse_format)]
+    to: Option<Format>,
+}
+
+#[derive(Serialize)]
+struct Output {
+    file: String,
+    hexes_before: usize,
+    hexes: usize,
+    boundary_quads: usize,
+    hexes_per_quad: f64,
+    balls: u64,
+    looked_up: u64,
+    /// Exchanges for fewer hexes, as many, more.
+    exchanges: [u64; 3],
+    stopped: &'static str,
+    seconds: f64,
+}
+
+/// How many balls to grow where neither a number nor a time is given.
+pub(crate) fn default_balls(hexes: usize) -> u64 {
+    (10 * hexes as u64).max(20_000)
+}
+
+/// Simplifies, judges, writes. Exit code 0 also if nothing smaller was found: the mesh is then written as it was.
+pub fn run(args: &SimplifyArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
+    let start = Instant::now();
+    files::check_output(&args.output, args.to)?;
+    if console.json && args.output == "-" {
+        bail!("--json and -o - both write to stdout; give a file to one of them");
+    }
+    files::check_distinct(&[&args.mesh, &args.output])?;
+    let mut data = files::read_data(&args.mesh, args.from)?;
+    for note in std::mem::take(&mut data.notes) {
+        console.note(note);
+    }
+    if data.hexes.is_empty() {
+        bail!("{} has no hexes; give a hex mesh (`hexfill fill` makes one from a surface)", args.mesh);
+    }
+    let others = data.tets.len() + data.wedges.len() + data.pyramids.len();
+    if others > 0 {
+        bail!("{} has {others} cells that are no hexes; only pure hex meshes can be simplified", args.mesh);
+    }
+    let atlas = args.atlas.as_deref().map(Atlas::read_path).transpose()?;
+    let balls = args.balls.unwrap_or(match ctx.deadline {
+        Some(_) => u64::MAX,
+        None => default_balls(data.hexes.len()),
+    });
+    let mut options = SimplifyOptions::default().with_balls(balls);
+    if let Some(heat) = args.heat {
+        options = options.with_heat(heat);
+    }
+    let mut made = hexfill::simplify(&data, &options, atlas.as_ref(), ctx).with_context(|| args.mesh.clone())?;
+    for note in std::mem::take(&mut made.data.notes) {
+        console.note(note);
+    }
+    files::write_data(&args.output, args.to, &made.data, console)?;
+    let report = made.report;
+    let mesh = made.data.hex_mesh()?;
+    let quads = mesh.boundary_facets().count();
+    let per_quad = report.after as f64 / quads.max(1) as f64;
+    let seconds = start.elapsed().as_secs_f64();
+    let how = if report.after < report.before {
+        "connectivity: judged proper, boundary unchanged (L1-L3)"
+    } else {
+        "nothing smaller was found; the mesh is written as it was"
+    };
+    console.say(format!(
+        "{}: {} -> {} hexes ({per_quad:.1} per boundary quad), {} balls tried",
+        args.mesh, report.before, report.after, report.balls
+    ));
+    console.say(how);
+    if made.data.has_coordinates && report.after < report.before {
+        console.say("geometry: new vertices lie at means of their neighbours; run `hexfill embed` next");
+    }
+    console.say(format!("written: {}", args.output));
+    if console.json {
+        console.print_json(&Output {
+            file: args.output.clone(),
+            hexes_before: report.before,
+            hexes: report.after,
+            boundary_quads: quads,
+            hexes_per_quad: per_quad,
+            balls: report.balls,
+            looked_up: report.looked_up,
+            exchanges: report.exchanges,
+            stopped: stop_word(report.stop),
+            seconds,
+        })?;
+    }
+    Ok(Exit::of_stop(report.stop, Exit::Done))
+}

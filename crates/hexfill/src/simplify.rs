@@ -1,0 +1,153 @@
+//! `simplify`: a mesh with fewer hexes and the same boundary, judged before it is given out.
+
+use crate::fill::FillOptions;
+use hexfill_check::{Judged, Level, Parts, judge};
+use hexfill_construct::CellChoice;
+use hexfill_io::MeshData;
+use hexfill_mesh::{Context, HexMesh, HexMeshError, VertexId};
+use hexfill_search::{Atlas, SimplifyOptions, SimplifyReport, simplification_atlas, simplify as simplify_mesh};
+use std::time::Instant;
+
+/// Why a mesh cannot be simplified.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum SimplifyError {
+    /// The hexes do not glue.
+    #[error(transparent)]
+    Mesh(#[from] HexMeshError),
+    /// The mesh breaks a rule of levels 1 to 3: exchanging parts of it could make it worse.
+    #[error("the mesh is not proper, it fails {rules}; `hexfill check` says where")]
+    NotProper {
+        /// The rules it breaks.
+        rules: String,
+    },
+    /// A mesh was made that the judge refused: a defect of this program.
+    #[error("internal error: the simplified mesh fails {rules}; please report this mesh")]
+    Refused {
+        /// The rules it breaks.
+        rules: String,
+    },
+}
+
+/// A mesh as file data after [`simplify`].
+#[derive(Clone, Debug)]
+pub struct SimplifiedData {
+    /// The mesh. Points of the input that are still used keep their order, position and tag; new ones lie at the mean of
+    /// their neighbours and have tag 0. The faces of the file stay, in their order and with their tags.
+    pub data: MeshData,
+    /// Per point: the point of the input it was, or `None`.
+    pub origin: Vec<Option<VertexId>>,
+    /// What was done.
+    pub report: SimplifyReport,
+}
+
+/// Replaces balls of hexes by smaller fillings from the atlas (without one: [`simplification_atlas`]); the boundary stays as it
+/// is, its positions bit for bit. What comes back has passed levels 1 to 3 of the judge, its boundary being the input's; if
+/// nothing smaller was found it is the input. Embed again afterwards: new interior points only have means of positions.
+///
+/// # Errors
+/// [`SimplifyError`].
+pub fn simplify(
+    data: &MeshData,
+    options: &SimplifyOptions,
+    atlas: Option<&Atlas>,
+    ctx: &Context<'_>,
+) -> Result<SimplifiedData, SimplifyError> {
+    let mesh = HexMesh::try_new(data.vertex_count(), &data.hexes)?;
+    judged(&mesh, None).map_err(|rules| SimplifyError::NotProper { rules })?;
+    let made = simplify_mesh(&mesh, atlas.unwrap_or_else(|| simplification_atlas()), options, ctx);
+    if made.report.after == made.report.before {
+        return Ok(SimplifiedData { data: data.clone(), origin: made.origin, report: made.report });
+    }
+    let mut number = vec![u32::MAX; mesh.n_vertices()];
+    for (new, old) in made.origin.iter().enumerate() {
+        if let Some(old) = old {
+            number[old.index()] = new as u32;
+        }
+    }
+    let boundary: Vec<[u32; 4]> = mesh.boundary_quads().into_iter().map(|q| q.map(|v| number[v.index()])).collect();
+    judged(&made.mesh, Some(&boundary)).map_err(|rules| SimplifyError::Refused { rules })?;
+
+    let mut out = data.clone();
+    out.hexes = made.mesh.hexes_raw();
+    // Faces inside the mesh may be gone with their points; those of the boundary never are.
+    let stays = |face: &[u32]| face.iter().all(|&v| number[v as usize] != u32::MAX);
+    let kept: Vec<usize> = (0..data.quads.len()).filter(|&q| stays(&data.quads[q])).collect();
+    out.quads = kept.iter().map(|&q| data.quads[q].map(|v| number[v as usize])).collect();
+    out.quad_tags = data.quad_tags.as_ref().map(|tags| kept.iter().map(|&q| tags[q]).collect());
+    if kept.len() < data.quads.len() {
+        out.notes.push(format!("{} faces inside the mesh are gone with their points", data.quads.len() - kept.len()));
+    }
+    if data.hex_tags.is_some() || !data.hex_data.is_empty() || !data.point_data.is_empty() {
+        out.notes.push("tags and data of hexes and data of points are dropped: the hexes are others now".to_owned());
+    }
+    (out.hex_tags, out.hex_data, out.point_data) = (None, Vec::new(), Vec::new());
+    let tag = |tags: &Vec<i64>| made.origin.iter().map(|o| o.map_or(0, |v| tags[v.index()])).collect();
+    out.point_tags = data.point_tags.as_ref().map(tag);
+    if data.has_coordinates {
+        out.points = carried_positions(&made.mesh, &made.origin, &data.points);
+    }
+    Ok(SimplifiedData { data: out, origin: made.origin, report: made.report })
+}
+
+/// A construction made smaller as the options of a fill ask for; its boundary comes first and keeps its ids.
+/// The caller judges.
+pub(crate) fn simplify_construction(
+    mesh: HexMesh,
+    start: Option<Vec<[f64; 3]>>,
+    options: &FillOptions,
+    ctx: &Context<'_>,
+    tried: &mut Vec<String>,
+) -> (HexMesh, Option<Vec<[f64; 3]>>) {
+    let Some(how) = &options.simplify else { return (mesh, start) };
+    let left = ctx.deadline.map(|end| end.saturating_duration_since(Instant::now()));
+    let share = if options.cells == CellChoice::Fewest { 0.9 } else { 0.5 };
+    let limited = left.map_or(*ctx, |left| ctx.with_time_limit(left.mul_f64(share)));
+    let atlas = options.atlas.as_deref().unwrap_or_else(|| simplification_atlas());
+    let made = simplify_mesh(&mesh, atlas, how, &limited);
+    tried.push(format!(
+        "simplification from {} to {} hexes over {} balls",
+        made.report.before, made.report.after, made.report.balls
+    ));
+    let start = start.map(|points| carried_positions(&made.mesh, &made.origin, &points));
+    (made.mesh, start)
+}
+
+/// Positions after a simplification: those of vertices that stayed, bit for bit; new vertices move to the mean of their
+/// neighbours, a few times over so that new ones next to new ones settle.
+pub(crate) fn carried_positions(mesh: &HexMesh, origin: &[Option<VertexId>], points: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    const ROUNDS: usize = 32;
+    let mut placed: Vec<Option<[f64; 3]>> = origin.iter().map(|o| o.map(|v| points[v.index()])).collect();
+    let fresh: Vec<usize> = (0..origin.len()).filter(|&v| origin[v].is_none()).collect();
+    let mut neighbours: Vec<Vec<usize>> = vec![Vec::new(); fresh.len()];
+    for [a, b] in mesh.edges() {
+        for (v, w) in [(a, b), (b, a)] {
+            if let Ok(i) = fresh.binary_search(&v.index()) {
+                neighbours[i].push(w.index());
+            }
+        }
+    }
+    for _ in 0..ROUNDS {
+        for (&v, around) in fresh.iter().zip(&neighbours) {
+            let known: Vec<[f64; 3]> = around.iter().filter_map(|&w| placed[w]).collect();
+            if !known.is_empty() {
+                // Divided before they are added: no finite input overflows.
+                let share = 1.0 / known.len() as f64;
+                placed[v] = Some([0, 1, 2].map(|k| known.iter().map(|p| p[k] * share).sum()));
+            }
+        }
+    }
+    placed.into_iter().map(Option::unwrap_or_default).collect()
+}
+
+/// Levels 1 to 3 of the judge; the rules broken if it refuses.
+fn judged(mesh: &HexMesh, boundary: Option<&[[u32; 4]]>) -> Result<(), String> {
+    let hexes = mesh.hexes_raw();
+    let mut judged = Judged::connectivity(mesh.n_vertices(), &hexes);
+    if let Some(quads) = boundary {
+        judged = judged.with_surface(quads);
+    }
+    let options = hexfill_check::Options::default().up_to(Level::L3).parts(Parts::Any).betti(false).quality(false);
+    let report = judge(&judged, &options, &Context::default());
+    if report.passed(Level::L3) { Ok(()) } else { Err(report.broken_rules().join(", ")) }
+}
