@@ -145,9 +145,8 @@ pub fn simplify(mesh: &HexMesh, atlas: &Atlas, options: &SimplifyOptions, ctx: &
         if live.n_hexes() + live.n_hex_slots() / 4096 < best.hexes.len() {
             best = Snapshot::of(&live);
         }
-        ctx.report("simplify", report.balls, Some(options.balls), || {
-            format!("{} hexes of {}", live.n_hexes(), mesh.n_hexes())
-        });
+        let total = (options.balls < u64::MAX).then_some(options.balls);
+        ctx.report("simplify", report.balls, total, || format!("{} hexes of {}", live.n_hexes(), mesh.n_hexes()));
     }
     report.looked_up = workers.iter().map(|w| w.looked_up).sum();
     if live.n_hexes() < best.hexes.len() {
