@@ -3,9 +3,9 @@
 
 Usage: compare_gmsh.py EMBED_JSON FILE...   (needs `pip install gmsh`; Gmsh is a separate program, nothing of it is used here)
 
-EMBED_JSON is the built example `embed_json`. Each FILE has `hexes` and `boundary_points`. Both programs start from the graph-Laplacian
-positions with the boundary fixed; printed are the least corner scaled Jacobian, the number of hexes with a corner that is not
-positive, and the time of the untangling itself.
+EMBED_JSON is the built example `embed_json`. Each FILE has `hexes` and `boundary_points`, and perhaps `start`. Both programs start from
+the `start`, else from the graph-Laplacian positions, with the boundary fixed; printed are the least corner scaled Jacobian, the number of hexes with a
+corner that is not positive, and the time of the untangling itself.
 """
 import json
 import subprocess
@@ -92,15 +92,16 @@ def main():
         hexes, given = data["hexes"], data["boundary_points"]
         quads = boundary(hexes)
         fixed = {v for quad in quads for v in quad}
-        start = laplacian_start(hexes, given, fixed)
+        start = data.get("start") or laplacian_start(hexes, given, fixed)
         points, seconds = untangle_with_gmsh(hexes, quads, start, fixed)
         moved = max(abs(points[v][c] - given[v][c]) for v in fixed for c in range(3))
         values = list(corner_scaled_jacobians(hexes, points))
-        print(f"{path}: {len(hexes)} hexes")
+        tangled = sum(v <= 0 for v in corner_scaled_jacobians(hexes, start))
+        print(f"{path}: {len(hexes)} hexes, {tangled} bad at the start")
         bad = sum(v <= 0 for v in values)
         print(f"  gmsh {gmsh.__version__}: least {min(values):.6f}, {bad} bad, {seconds:.3f} s, boundary moved {moved:g}")
         for objective in ["untangle-only", "scaled-jacobian"]:
-            done = subprocess.run([embed, path, objective], capture_output=True, text=True, check=True)
+            done = subprocess.run([embed, path, objective, "1"], capture_output=True, text=True, check=True)
             report = json.loads(done.stdout)
             print(
                 f"  hexfill {objective}: least {report['scaled_jacobian']:.6f} (whole cells), "

@@ -292,6 +292,8 @@ impl Search<'_> {
         let first_valid_is_enough =
             self.options.objective == Objective::UntangleOnly || self.options.starts == 0 && n_hexes > 400;
         let starts = match (self.options.starts, n_hexes) {
+            // Nothing can move.
+            _ if self.normal.problem.free.is_empty() => 1,
             (0, 0..=100) => 8,
             (0, 101..=5000) => 4,
             // What a given start does not lead to is out of reach of means of neighbours.

@@ -57,6 +57,41 @@ fn the_spindle_with_40_hexes_has_coordinates() {
     }
 }
 
+/// Classes with 40, 42 and 44 hexes that are as good as the one with 36: their bound is 1/sqrt(10), too.
+#[test]
+fn larger_pyramids_reach_the_same_optimum() {
+    for (name, hexes, least) in [("pyramid_40", 40, 0.3162), ("pyramid_42", 42, 0.3162), ("pyramid_44", 44, 0.31)] {
+        let sample = Sample::read(name);
+        let mesh = sample.mesh();
+        assert_eq!(mesh.n_hexes(), hexes);
+        let mut options = Options::default();
+        options.starts = 1;
+        let done = embed(&mesh, &sample.boundary_points, None, &options, &Context::default()).unwrap();
+        let (valid, [lower, _]) = certified(&mesh, &done.points);
+        assert!(valid && lower >= least, "{name} {lower}");
+        assert!((done.report.upper_bound - 0.1f64.sqrt()).abs() < 1e-12, "{name} {}", done.report.upper_bound);
+        assert_boundary_kept(&mesh, &sample.boundary_points, &done.points);
+    }
+}
+
+#[test]
+fn a_start_that_cannot_be_untangled_comes_back_no_worse() {
+    // A boundary pushed through itself: nothing is valid, whatever the inside does.
+    let (mesh, mut start) = grid(4, 0.3);
+    let before = start.clone();
+    start[0] = [2.0, 2.0, 2.0];
+    let count = |points: &[[f64; 3]]| {
+        let hexes = mesh.hexes_raw();
+        let input = hexfill_check::Judged::connectivity(mesh.n_vertices(), &hexes).with_points(points);
+        hexfill_check::cell_quality(&input).into_iter().flatten().filter(|c| !c.valid).count()
+    };
+    let mut bad = before;
+    bad[0] = start[0];
+    let done = embed(&mesh, &bad, Some(&bad), &Options::default(), &Context::default()).unwrap();
+    assert!(count(&bad) > 0 && count(&done.points) <= count(&bad), "{} {}", count(&bad), count(&done.points));
+    assert!(!done.report.valid_in_floating_point);
+}
+
 #[test]
 fn symmetric_positions_are_symmetric_and_as_good() {
     for (name, order, least) in [("pyramid_36", 4, 0.3162), ("spindle_40", 4, 0.19)] {

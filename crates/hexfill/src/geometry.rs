@@ -174,6 +174,9 @@ impl std::fmt::Display for GeometryReport {
                 "; with this connectivity and boundary no placement is valid (star bound {:.4}{vertex})",
                 e.upper_bound
             )?;
+        } else if e.upper_bound <= 1e-12 {
+            let vertex = e.star_bounds.first().map_or(String::new(), |b| format!(" at {}", b.vertex));
+            write!(f, "; the boundary leaves no room{vertex} (star bound 0 up to rounding)")?;
         }
         Ok(())
     }
