@@ -43,7 +43,7 @@ fn a_construction_becomes_smaller_and_keeps_its_boundary() {
         let report = json(&report);
         assert_eq!((&report["hexes_before"], &report["stopped"]), (&before.into(), &"finished".into()));
         let hexes = report["hexes"].as_u64().unwrap();
-        assert!(hexes < before * 3 / 4, "{before} -> {hexes}");
+        assert!(hexes < before * 9 / 10, "{before} -> {hexes}");
         assert_eq!(report["boundary_quads"], 16);
         assert_judged(dir.path(), out, hexes);
         seen.push(std::fs::read(dir.path().join(out)).unwrap());
@@ -94,7 +94,8 @@ fn a_time_limit_ends_the_work_with_what_there_is() {
 fn fill_simplifies_when_asked() {
     let dir = tempfile::tempdir().unwrap();
     let before = constructed(dir.path(), "large.json");
-    for extra in [["--simplify", "--no-embed"].as_slice(), &["--no-embed", "--time-limit", "30s"]] {
+    for extra in [["--simplify", "--no-embed", "--time-limit", "6s"].as_slice(), &["--no-embed", "--time-limit", "6s"]]
+    {
         let args = ["fill", ":schneiders-pyramid", "--strategy", "construct", "--json", "-o", "small.json"];
         let (code, report, err) = hexfill(dir.path(), &[&args, extra].concat());
         assert_eq!(code, 0, "{err}");
