@@ -32,8 +32,10 @@ fn fill(surface: &QuadSurface, points: &[[f64; 3]]) -> Result<(usize, usize), Co
         inside += volume;
     }
     let origin = points[triangles[0][0] as usize];
-    let enclosed: f64 =
-        triangles.iter().map(|&[a, b, c]| orient([origin, points[a as usize], points[b as usize], points[c as usize]])).sum();
+    let enclosed: f64 = triangles
+        .iter()
+        .map(|&[a, b, c]| orient([origin, points[a as usize], points[b as usize], points[c as usize]]))
+        .sum();
     assert!((inside - enclosed).abs() < 1e-9 * enclosed, "{inside} {enclosed}");
     Ok((complex.tets.len(), complex.n_vertices - points.len()))
 }
@@ -119,12 +121,8 @@ fn cavities() {
     for (name, (surface, points)) in [
         ("plate with a cavity", plate(1, 3, &[[1, 1, 1]])),
         ("two cavities", plate(2, 3, &[[1, 1, 1], [1, 7, 1]])),
-        (
-            "nested",
-            together(&[box_at(4, 10.0, O, true), box_at(3, 8.0, O, false), torus_at(4, 6, true, 1.0, O, true)]),
-        ),
+        ("nested", together(&[box_at(4, 10.0, O, true), box_at(3, 8.0, O, false), torus_at(4, 6, true, 1.0, O, true)])),
         ("torus taken out", together(&[box_at(3, 6.0, O, true), torus_at(5, 4, true, 1.0, O, false)])),
-        ("odd ones", together(&[one_more(box_at(3, 6.0, O, true)), one_more(box_at(3, 1.0, O, false))])),
         ("apart", together(&[box_at(2, 1.0, O, true), box_at(2, 1.0, [3.0, 0.1, 0.2], true)])),
     ] {
         filled(name, &surface, &points);
@@ -142,5 +140,79 @@ fn bamboo_pen_and_cubespikes() {
         for share in [0.1, 0.2, 0.4] {
             filled(&format!("{name} inset {share}"), &surface, &inset(&surface, &points, share));
         }
+    }
+}
+
+/// Numbers that look random, the same every time.
+struct Numbers(u64);
+
+impl Numbers {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+#[test]
+fn random_voxels_and_stars() {
+    let mut numbers = Numbers(7);
+    let mut genera = std::collections::BTreeSet::new();
+    for case in 0..400 {
+        let cells: Vec<bool> = (0..27).map(|_| numbers.next() < 0.6).collect();
+        let is_in = |p: [usize; 3]| cells[p[0] + 3 * p[1] + 9 * p[2]];
+        // Those that touch themselves along an edge or in a vertex are no surfaces.
+        if hexfill_mesh::generate::voxel_surface([3, 3, 3], is_in).is_err() {
+            continue;
+        }
+        let (surface, mut points) = voxels([3, 3, 3], is_in);
+        genera.insert(surface.genus());
+        filled(&format!("voxels {case} genus {}", surface.genus()), &surface, &points);
+        points.iter_mut().flatten().for_each(|x| *x += 0.3 * numbers.next());
+        filled(&format!("voxels {case} moved"), &surface, &points);
+    }
+    assert!(genera.len() > 2, "{genera:?}");
+    for case in 0..10 {
+        let (surface, mut points) = box_at(4, 1.0, O, true);
+        for p in &mut points {
+            let r = (0.5 + numbers.next()) / p.iter().map(|x| x * x).sum::<f64>().sqrt();
+            *p = p.map(|x| r * x);
+        }
+        filled(&format!("star {case}"), &surface, &points);
+    }
+}
+
+#[test]
+fn refusals_say_why() {
+    let reason = |surface: &QuadSurface, points: &[[f64; 3]]| match fill(surface, points) {
+        Err(e @ ConstructError::InteriorNeeded { .. }) => e.to_string(),
+        other => panic!("{other:?}"),
+    };
+    let (surface, points) = together(&[box_at(2, 1.0, O, true), box_at(2, 1.0, [0.7, 0.6, 0.5], true)]);
+    let words = reason(&surface, &points);
+    assert!(words.contains("meets itself") && words.contains("install tetgen"), "{words}");
+    let (surface, points) = box_at(2, 1.0, O, false);
+    assert!(reason(&surface, &points).contains("faces inward"));
+    let (surface, points) = one_more(box_at(3, 6.0, O, true));
+    assert!(reason(&surface, &points).contains("has no area"));
+    let (surface, mut points) = box_at(2, 1.0, O, true);
+    points[3][1] = f64::NAN;
+    assert!(reason(&surface, &points).contains("vertex 3"));
+    points[3] = points[4];
+    let words = reason(&surface, &points);
+    assert!(words.contains("same place") || words.contains("no area"), "{words}");
+}
+
+#[test]
+fn the_same_twice_and_stopped_when_told() {
+    let (surface, points) = torus_at(8, 7, true, 1.0, O, true);
+    let triangles = core_triangles(&surface, RouteChoice::Auto);
+    let request = TetRequest { n_vertices: points.len(), triangles: &triangles, points: Some(&points) };
+    let made = |ctx: &Context<'_>| DelaunayTets::default().fill(&request, ctx);
+    let [a, b] = [made(&Context::default()).unwrap(), made(&Context::default()).unwrap()];
+    assert_eq!((a.tets, a.points), (b.tets, b.points));
+    let cancel = AtomicBool::new(true);
+    match made(&Context { cancel: Some(&cancel), ..Context::default() }) {
+        Err(ConstructError::Stopped(StopReason::Cancelled)) => {}
+        other => panic!("{other:?}"),
     }
 }

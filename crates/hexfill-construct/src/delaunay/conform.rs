@@ -68,8 +68,6 @@ pub(crate) struct Conforming<'a> {
 pub(crate) struct Inside {
     /// Positions: the surface's vertices, then further ones.
     pub points: Vec<Point>,
-    /// What each vertex belongs to; [`Origin::Far`] does not occur.
-    pub origin: Vec<Origin>,
     /// The tets.
     pub tets: Vec<[u32; 4]>,
     /// The boundary, outward, with the surface's triangle it is part of.
@@ -122,7 +120,11 @@ impl<'a> Conforming<'a> {
             self.recover_edges(ctx)?;
             let open = self.open_triangles();
             ctx.report("conforming tetrahedra", round, None, || {
-                format!("{} points added, {} triangles open", self.origin.len() - 4 - self.triangles_at.len(), open.len())
+                format!(
+                    "{} points added, {} triangles open",
+                    self.origin.len() - 4 - self.triangles_at.len(),
+                    open.len()
+                )
             });
             if open.is_empty() {
                 return Ok(());
@@ -142,7 +144,9 @@ impl<'a> Conforming<'a> {
         loop {
             let mut missing = 0usize;
             for e in 0..self.edges.len() {
-                if e.is_multiple_of(256) && let Some(reason) = ctx.stop() {
+                if e.is_multiple_of(256)
+                    && let Some(reason) = ctx.stop()
+                {
                     return Err(Failure::Stopped(reason));
                 }
                 let mut k = 0;
@@ -183,7 +187,9 @@ impl<'a> Conforming<'a> {
 
     fn add(&mut self, p: Point, near: u32, origin: Origin) -> Result<u32, Failure> {
         if self.budget == 0 {
-            return Err("the surface meets itself or nearly does: recovering it took too many points".to_owned().into());
+            return Err("the surface meets itself or nearly does: recovering it took too many points"
+                .to_owned()
+                .into());
         }
         self.budget -= 1;
         let v = self.dt.add(p, near).map_err(|_| "the surface meets itself: two of its points coincide".to_owned())?;
@@ -213,9 +219,9 @@ impl<'a> Conforming<'a> {
     fn common(&self, face: [u32; 3]) -> Option<u32> {
         let [a, b, c] = face.map(|v| self.triangles_of(v));
         let found = a.iter().copied().filter(|t| b.contains(t) && c.contains(t));
-        found.into_iter().find(|&t| {
-            !self.triangle_edges[t as usize].iter().any(|&e| face.iter().all(|&v| self.is_on_edge(v, e)))
-        })
+        found
+            .into_iter()
+            .find(|&t| !self.triangle_edges[t as usize].iter().any(|&e| face.iter().all(|&v| self.is_on_edge(v, e))))
     }
 
     /// Per triangle of the surface: the faces that are parts of it, each once, as (triangle, sorted corners).
@@ -404,7 +410,9 @@ impl<'a> Conforming<'a> {
                 continue;
             }
             if (behind > 0 && before > 0) || (behind > 0 && is_far[r]) {
-                return Err("the surface meets itself or faces inward: its sides contradict each other".to_owned().into());
+                return Err("the surface meets itself or faces inward: its sides contradict each other"
+                    .to_owned()
+                    .into());
             }
             keep[r] = behind > 0;
         }
@@ -421,7 +429,6 @@ impl<'a> Conforming<'a> {
         let without_far = |k: usize| !(n as usize..n as usize + 4).contains(&k);
         Ok(Inside {
             points: self.dt.points.iter().enumerate().filter(|(k, _)| without_far(*k)).map(|(_, p)| *p).collect(),
-            origin: self.origin.iter().enumerate().filter(|(k, _)| without_far(*k)).map(|(_, o)| *o).collect(),
             tets: tets.into_iter().map(|t| t.map(number)).collect(),
             boundary: boundary.into_iter().map(|(face, f)| (face.map(number), f)).collect(),
         })

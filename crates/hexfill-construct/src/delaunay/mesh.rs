@@ -255,8 +255,7 @@ mod tests {
 
     #[test]
     fn grids_with_every_tie_there_is() {
-        let points: Vec<Point> =
-            (0..64).map(|i| [f64::from(i % 4), f64::from(i / 4 % 4), f64::from(i / 16)]).collect();
+        let points: Vec<Point> = (0..64).map(|i| [f64::from(i % 4), f64::from(i / 4 % 4), f64::from(i / 16)]).collect();
         let mut d = Delaunay::new(&points);
         for v in 0..64 {
             // An order that jumps about.

@@ -3,13 +3,14 @@
 //! 1. The Delaunay tetrahedralisation of the surface's vertices (`mesh.rs`).
 //! 2. Points are added to edges and triangles of the surface until it is a union of faces (`conform.rs`).
 //! 3. What lies inside is kept; every point added to the boundary is taken off it again, and inner points are
-//!    removed as long as all tets stay positive (`solid.rs`).
+//!    removed as long as all tets stay positive (`solid.rs`), with flips against flat tets (`flips.rs`).
 //!
 //! All decisions about orientation are exact (adaptive predicates, Shewchuk 1997), and no random choice is made. A
 //! surface that meets itself is refused: its triangles cannot all be faces, so step 2 runs out of points or step 3
 //! finds sides that contradict each other.
 
 mod conform;
+mod flips;
 mod mesh;
 mod solid;
 
@@ -17,6 +18,7 @@ use crate::error::ConstructError;
 use crate::tets::{InteriorTets, TetComplex, TetRequest};
 use conform::{Conforming, Failure};
 use hexfill_mesh::Context;
+use mesh::{cross, dot, sub};
 use solid::Solid;
 
 /// Tetrahedra of the interior by conforming Delaunay refinement. See the module page.
@@ -72,6 +74,16 @@ impl DelaunayTets {
         let own: Vec<[f64; 3]> = used.iter().map(|&v| points[v as usize]).collect();
         if let Some(v) = own.iter().position(|p| p.iter().any(|x| !x.is_finite() || x.abs() > 1e60)) {
             return Err(format!("the position of vertex {} is not a number or too large", used[v]).into());
+        }
+        let flat = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|v| points[v as usize]);
+            let sides = [sub(b, a), sub(c, b), sub(a, c)];
+            let longest = sides.iter().map(|&s| dot(s, s)).fold(0.0, f64::max);
+            let area = cross(sides[0], sides[1]);
+            dot(area, area).sqrt() <= 1e-12 * longest
+        };
+        if let Some(t) = request.triangles.iter().position(flat) {
+            return Err(format!("half of quad {} has no area, so no tetrahedron stands on it", t / 2).into());
         }
         let triangles: Vec<[u32; 3]> = request.triangles.iter().map(|t| t.map(|v| number[v as usize])).collect();
         let budget = self.points_per_triangle.saturating_mul(triangles.len());

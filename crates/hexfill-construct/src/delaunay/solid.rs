@@ -8,28 +8,30 @@
 //! polygon round it is triangulated without it: the new triangles and the moved point are new tets, which it sees
 //! because it lies on the inner side of their planes.
 
-use super::conform::{Inside, Origin};
+use super::conform::Inside;
 use super::mesh::{NONE, Point, cross, dot, orient, sub};
 use crate::tets::TET_EDGES;
 use hexfill_mesh::{Context, StopReason};
 
 /// Least quality that a removal may leave, unless it was worse before.
-const FLOOR: f64 = 0.01;
+pub(super) const FLOOR: f64 = 0.01;
+
+/// Shares (see [`Solid::share`]) up to this are those of rounded points on one line.
+const FLAT: f64 = 1e-9;
 
 /// Tets with, per vertex, those that have it.
 pub(crate) struct Solid {
-    points: Vec<Point>,
-    origin: Vec<Origin>,
+    pub(super) points: Vec<Point>,
     /// A removed tet has [`NONE`] first.
-    tets: Vec<[u32; 4]>,
-    tets_at: Vec<Vec<u32>>,
+    pub(super) tets: Vec<[u32; 4]>,
+    pub(super) tets_at: Vec<Vec<u32>>,
     /// The boundary, outward; a removed face has [`NONE`] first.
     faces: Vec<([u32; 3], u32)>,
-    faces_at: Vec<Vec<u32>>,
+    pub(super) faces_at: Vec<Vec<u32>>,
     /// Per triangle of the surface its unit outward normal.
     normals: Vec<Point>,
     /// Number of vertices of the surface.
-    n_surface: usize,
+    pub(super) n_surface: usize,
 }
 
 fn unit(v: Point) -> Point {
@@ -56,7 +58,7 @@ fn quality(p: [Point; 4]) -> f64 {
 impl Solid {
     /// What was found inside a surface with these triangles.
     pub fn new(inside: Inside, triangles: &[[u32; 3]], n_surface: usize) -> Self {
-        let Inside { points, origin, tets, boundary } = inside;
+        let Inside { points, tets, boundary } = inside;
         let mut tets_at = vec![Vec::new(); points.len()];
         for (t, tet) in tets.iter().enumerate() {
             tet.iter().for_each(|&v| tets_at[v as usize].push(t as u32));
@@ -70,14 +72,14 @@ impl Solid {
             unit(cross(sub(b, a), sub(c, a)))
         };
         let normals = triangles.iter().map(normal).collect();
-        Self { points, origin, tets, tets_at, faces: boundary, faces_at, normals, n_surface }
+        Self { points, tets, tets_at, faces: boundary, faces_at, normals, n_surface }
     }
 
     fn at(&self, v: u32) -> Point {
         self.points[v as usize]
     }
 
-    fn quality(&self, tet: [u32; 4]) -> f64 {
+    pub(super) fn quality(&self, tet: [u32; 4]) -> f64 {
         quality(tet.map(|v| self.at(v)))
     }
 
@@ -152,6 +154,7 @@ impl Solid {
         let mut left: Vec<u32> = (self.n_surface as u32..self.points.len() as u32).rev().collect();
         left.retain(|&v| !self.faces_at[v as usize].is_empty());
         // Drawing points onto others removes them for good, so that comes first, as often as it helps.
+        self.improve(ctx)?;
         loop {
             let before = left.len();
             let mut kept = Vec::new();
@@ -169,6 +172,7 @@ impl Solid {
             }
         }
         loop {
+            self.improve(ctx)?;
             let before = left.len();
             let mut kept = Vec::new();
             for v in left {
@@ -249,9 +253,8 @@ impl Solid {
         };
         let mut best: Option<(f64, u32)> = None;
         for u in candidates {
-            let fits = polygons.iter().all(|(polygon, tag)| {
-                fan(polygon, u).iter().all(|t| self.share(*t, *tag) > 1e-9)
-            });
+            let fits =
+                polygons.iter().all(|(polygon, tag)| fan(polygon, u).iter().all(|t| self.share(*t, *tag) > FLAT));
             if !fits {
                 continue;
             }
@@ -276,35 +279,45 @@ impl Solid {
         dot(cross(sub(b, a), sub(c, a)), self.normals[tag as usize]) / longest
     }
 
-    /// Cuts ears off a flat polygon, the best one first.
-    fn ears(&self, polygon: &[u32], tag: u32) -> Option<Vec<([u32; 3], u32)>> {
-        let mut left = polygon.to_vec();
-        let mut triangles = Vec::new();
-        while left.len() > 3 {
-            let n = left.len();
-            let mut best: Option<(f64, usize)> = None;
-            for k in 0..n {
-                let ear = [left[(k + n - 1) % n], left[k], left[(k + 1) % n]];
-                let share = self.share(ear, tag);
-                if share <= 1e-9 || best.is_some_and(|b| b.0 >= share) {
-                    continue;
-                }
-                let is_free = left.iter().filter(|w| !ear.contains(w)).all(|&w| {
-                    (0..3).any(|i| self.share([ear[i], ear[(i + 1) % 3], w], tag) < 0.0)
-                });
-                if is_free {
-                    best = Some((share, k));
-                }
-            }
-            let (_, k) = best?;
-            triangles.push(([left[(k + n - 1) % n], left[k], left[(k + 1) % n]], tag));
-            left.remove(k);
+    /// The triangulation of a flat polygon whose worst triangle is best, by dynamic programming (Klincsek 1980). All its
+    /// triangles face outward, so it is one even if the polygon is not convex.
+    fn cut(&self, polygon: &[u32], tag: u32) -> Option<Vec<([u32; 3], u32)>> {
+        let n = polygon.len();
+        if n < 3 {
+            return None;
         }
-        let last = [left[0], left[1], left[2]];
-        (self.share(last, tag) > 0.0).then(|| {
-            triangles.push((last, tag));
-            triangles
-        })
+        // Entry i n + j: the polygon from i to j closed by the side i j; its worst triangle, and where the one at that side ends.
+        let mut best = vec![(f64::INFINITY, 0); n * n];
+        for width in 2..n {
+            for i in 0..n - width {
+                let j = i + width;
+                let worst = |k: usize| {
+                    let share = self.share([polygon[i], polygon[k], polygon[j]], tag);
+                    share.min(best[i * n + k].0).min(best[k * n + j].0)
+                };
+                let mut found = (f64::NEG_INFINITY, i + 1);
+                for k in i + 1..j {
+                    let here = worst(k);
+                    if here > found.0 {
+                        found = (here, k);
+                    }
+                }
+                best[i * n + j] = found;
+            }
+        }
+        if best[n - 1].0 <= FLAT {
+            return None;
+        }
+        let mut triangles = Vec::with_capacity(n - 2);
+        let mut stack = vec![(0, n - 1)];
+        while let Some((i, j)) = stack.pop() {
+            if j - i >= 2 {
+                let k = best[i * n + j].1;
+                triangles.push(([polygon[i], polygon[k], polygon[j]], tag));
+                stack.extend([(i, k), (k, j)]);
+            }
+        }
+        Some(triangles)
     }
 
     /// Moves a boundary point inward and closes the boundary below it.
@@ -313,8 +326,8 @@ impl Solid {
         let mut faces = Vec::new();
         let mut inward = [0.0; 3];
         for (polygon, tag) in &polygons {
-            match self.ears(polygon, *tag) {
-                Some(ears) => faces.extend(ears),
+            match self.cut(polygon, *tag) {
+                Some(cut) => faces.extend(cut),
                 None => return false,
             }
             inward = sub(inward, self.normals[*tag as usize]);
@@ -385,6 +398,7 @@ impl Solid {
     /// Removes inner points by drawing them onto neighbours, and moves those that stay to better places.
     pub fn remove_points(&mut self, ctx: &Context<'_>) -> Result<(), StopReason> {
         for round in 0..6 {
+            self.improve(ctx)?;
             let mut removed = 0;
             for v in (self.n_surface as u32..self.points.len() as u32).rev() {
                 if let Some(reason) = ctx.stop() {
@@ -400,8 +414,9 @@ impl Solid {
                 }
             }
             ctx.report("points removed", round, None, || format!("{removed}"));
+            self.save_tets();
         }
-        Ok(())
+        self.improve(ctx)
     }
 
     fn draw_inside(&mut self, v: u32) -> bool {
@@ -419,15 +434,10 @@ impl Solid {
         true
     }
 
-    fn smooth(&mut self, v: u32) {
+    pub(super) fn smooth(&mut self, v: u32) {
         let tets = self.star(v);
-        let reach = tets
-            .iter()
-            .flatten()
-            .map(|&w| sub(self.at(w), self.at(v)))
-            .map(|d| dot(d, d))
-            .fold(0.0, f64::max)
-            .sqrt();
+        let reach =
+            tets.iter().flatten().map(|&w| sub(self.at(w), self.at(v))).map(|d| dot(d, d)).fold(0.0, f64::max).sqrt();
         let p = self.at(v);
         self.points[v as usize] = self.climb(&tets, v, (self.least(&tets, v, p), p, reach));
     }

@@ -1,0 +1,189 @@
+//! Flips: the tets round an inner edge, or the two at an inner face, are replaced if their worst one gets better.
+//!
+//! Rounded points that lie almost on a circle or in a plane make tets with hardly any volume (a Delaunay tetrahedralisation
+//! takes them as they come), and such tets bar every move of their corners. Removing an edge (Freitag and Ollivier-Gooch 1997)
+//! tries all triangulations of the ring of vertices round it, by dynamic programming (Klincsek 1980). No flip touches the boundary.
+
+use super::mesh::NONE;
+use super::solid::{FLOOR, Solid};
+use crate::tets::{OUTWARD, TET_EDGES};
+use hexfill_mesh::{Context, StopReason};
+
+/// Tets of less quality are worked on.
+const GOOD: f64 = 0.05;
+
+/// Longest ring that is triangulated anew.
+const RING: usize = 10;
+
+/// Most passes over the bad tets.
+const PASSES: usize = 6;
+
+impl Solid {
+    /// Flips and moves until no bad tet gets better that way.
+    pub fn improve(&mut self, ctx: &Context<'_>) -> Result<(), StopReason> {
+        for _ in 0..PASSES {
+            let mut bad: Vec<(f64, u32)> = Vec::new();
+            for (t, &tet) in self.tets.iter().enumerate().filter(|(_, tet)| tet[0] != NONE) {
+                let q = self.quality(tet);
+                if q < GOOD {
+                    bad.push((q, t as u32));
+                }
+            }
+            bad.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            let mut done = 0;
+            for (_, t) in bad {
+                if let Some(reason) = ctx.stop() {
+                    return Err(reason);
+                }
+                if self.tets[t as usize][0] != NONE && self.improve_tet(t) {
+                    done += 1;
+                }
+            }
+            if done == 0 {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// The best flip of an edge or a face of a tet, else a move of one of its inner points.
+    fn improve_tet(&mut self, t: u32) -> bool {
+        let tet = self.tets[t as usize];
+        let mut best: Option<(f64, Vec<u32>, Vec<[u32; 4]>)> = None;
+        let edges = TET_EDGES.map(|[i, j]| self.without_edge(tet[i], tet[j]));
+        let faces = [0, 1, 2, 3].map(|i| self.without_face(t, i));
+        for (old, new) in edges.into_iter().chain(faces).flatten() {
+            let before = old.iter().map(|&u| self.quality(self.tets[u as usize])).fold(f64::INFINITY, f64::min);
+            let after = new.iter().map(|&u| self.quality(u)).fold(f64::INFINITY, f64::min);
+            if after > before * 1.0001 && after > 0.0 && best.as_ref().is_none_or(|b| after > b.0) {
+                best = Some((after, old, new));
+            }
+        }
+        if let Some((_, old, new)) = best {
+            self.replace(&old, &new);
+            return true;
+        }
+        let before = self.quality(tet);
+        for v in tet {
+            if v as usize >= self.n_surface && self.faces_at[v as usize].is_empty() {
+                self.smooth(v);
+            }
+        }
+        self.quality(tet) > before * 1.01
+    }
+
+    /// Removes edges of three tets where the two that take their place are good enough: one tet less each.
+    pub fn save_tets(&mut self) {
+        for t in 0..self.tets.len() {
+            let tet = self.tets[t];
+            if tet[0] == NONE {
+                continue;
+            }
+            for [i, j] in TET_EDGES {
+                let Some((old, new)) = self.without_edge(tet[i], tet[j]) else { continue };
+                if old.len() != 3 {
+                    continue;
+                }
+                let before = old.iter().map(|&u| self.quality(self.tets[u as usize])).fold(f64::INFINITY, f64::min);
+                let after = new.iter().map(|&u| self.quality(u)).fold(f64::INFINITY, f64::min);
+                if after > 0.0 && after >= before.min(5.0 * FLOOR) {
+                    self.replace(&old, &new);
+                    break;
+                }
+            }
+        }
+    }
+
+    fn replace(&mut self, old: &[u32], new: &[[u32; 4]]) {
+        for &t in old {
+            for v in std::mem::replace(&mut self.tets[t as usize], [NONE; 4]) {
+                self.tets_at[v as usize].retain(|&u| u != t);
+            }
+        }
+        for &tet in new {
+            let t = self.tets.len() as u32;
+            self.tets.push(tet);
+            tet.iter().for_each(|&v| self.tets_at[v as usize].push(t));
+        }
+    }
+
+    /// The tets round an inner edge, and the best ones that fill the same place without it.
+    fn without_edge(&self, a: u32, b: u32) -> Option<(Vec<u32>, Vec<[u32; 4]>)> {
+        let old: Vec<u32> =
+            self.tets_at[a as usize].iter().copied().filter(|&t| self.tets[t as usize].contains(&b)).collect();
+        if old.len() > RING || old.len() < 3 {
+            return None;
+        }
+        // The other two corners of each, so that a, b and they are positive.
+        let mut steps: Vec<[u32; 2]> = Vec::with_capacity(old.len());
+        for &t in &old {
+            let tet = self.tets[t as usize];
+            let i = tet.iter().position(|&v| v == a)?;
+            let [x, y, z] = OUTWARD[i].map(|k| tet[k]);
+            steps.push(if x == b {
+                [y, z]
+            } else if y == b {
+                [z, x]
+            } else {
+                [x, y]
+            });
+        }
+        let mut ring = vec![steps[0][0]];
+        let mut here = steps[0][1];
+        while here != ring[0] {
+            ring.push(here);
+            // No next one: the edge is on the boundary.
+            here = steps.iter().find(|s| s[0] == here)?[1];
+            if ring.len() > old.len() {
+                return None;
+            }
+        }
+        let n = ring.len();
+        if n != old.len() {
+            return None;
+        }
+        let both = |i: usize, j: usize, k: usize| [[a, ring[i], ring[j], ring[k]], [b, ring[i], ring[k], ring[j]]];
+        // best[i][j]: the ring from i to j closed by the edge i j, its worst tet and where the triangle at that edge ends.
+        let mut best = [[(f64::INFINITY, 0usize); RING]; RING];
+        for width in 2..n {
+            for i in 0..n - width {
+                let j = i + width;
+                let mut found = (f64::NEG_INFINITY, 0);
+                for k in i + 1..j {
+                    let [p, q] = both(i, k, j).map(|t| self.quality(t));
+                    let worst = p.min(q).min(best[i][k].0).min(best[k][j].0);
+                    if worst > found.0 {
+                        found = (worst, k);
+                    }
+                }
+                best[i][j] = found;
+            }
+        }
+        if best[0][n - 1].0 <= 0.0 {
+            return None;
+        }
+        let mut new = Vec::with_capacity(2 * n - 4);
+        let mut stack = vec![(0, n - 1)];
+        while let Some((i, j)) = stack.pop() {
+            if j - i >= 2 {
+                let k = best[i][j].1;
+                new.extend(both(i, k, j));
+                stack.extend([(i, k), (k, j)]);
+            }
+        }
+        Some((old, new))
+    }
+
+    /// The two tets at an inner face, and the three round the edge between their far corners.
+    fn without_face(&self, t: u32, i: usize) -> Option<(Vec<u32>, Vec<[u32; 4]>)> {
+        let tet = self.tets[t as usize];
+        let [x, y, z] = OUTWARD[i].map(|k| tet[k]);
+        let beside = self.tets_at[x as usize].iter().copied().find(|&u| {
+            let other = self.tets[u as usize];
+            u != t && other.contains(&y) && other.contains(&z)
+        })?;
+        let p = tet[i];
+        let q = self.tets[beside as usize].into_iter().find(|v| ![x, y, z].contains(v))?;
+        Some((vec![t, beside], vec![[p, x, y, q], [p, y, z, q], [p, z, x, q]]))
+    }
+}
