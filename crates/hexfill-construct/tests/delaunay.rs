@@ -157,7 +157,7 @@ impl Numbers {
 fn random_voxels_and_stars() {
     let mut numbers = Numbers(7);
     let mut genera = std::collections::BTreeSet::new();
-    for case in 0..400 {
+    for case in 0..3000 {
         let cells: Vec<bool> = (0..27).map(|_| numbers.next() < 0.6).collect();
         let is_in = |p: [usize; 3]| cells[p[0] + 3 * p[1] + 9 * p[2]];
         // Those that touch themselves along an edge or in a vertex are no surfaces.
