@@ -14,10 +14,10 @@ fn main() {
     };
     let ctx = Context::default();
     println!("surface: {} quads, {} vertices, genus {}", surface.n_quads(), surface.n_used_vertices(), surface.genus());
-    let colours = colouring(&surface);
+    let colours = colouring(&surface, false);
     let white: Vec<usize> = (0..surface.n_vertices()).filter(|&v| colours.white[v]).collect();
     println!("1 colours: white {white:?}, {} cut edges", colours.n_cut_edges);
-    match light_sides(&surface, &[], &ctx) {
+    match light_sides(&surface, &[], 0, &ctx) {
         Ok(sides) => {
             let pairs: Vec<(u32, u32)> = surface
                 .darts()

@@ -51,11 +51,12 @@ fn n_degree_three(surface: &QuadSurface, class: &[bool], side: bool) -> usize {
     (0..class.len()).filter(|&v| class[v] == side && surface.degree(VertexId::new(v)) == 3).count()
 }
 
-/// A colouring with few black-black edges: none if the surface is bipartite. Linear time.
-pub fn colouring(surface: &QuadSurface) -> Colouring {
+/// A colouring with few black-black edges: none if the surface is bipartite. Linear time. `swap` exchanges the colours of a
+/// bipartite surface.
+pub fn colouring(surface: &QuadSurface, swap: bool) -> Colouring {
     if let Ok(odd) = bipartition(surface) {
         // The class with more vertices of three quads becomes white (the core is cheaper there).
-        let side = n_degree_three(surface, &odd, true) >= n_degree_three(surface, &odd, false);
+        let side = swap != (n_degree_three(surface, &odd, true) >= n_degree_three(surface, &odd, false));
         let white = odd.iter().enumerate().map(|(v, &o)| surface.degree(VertexId::new(v)) > 0 && o == side).collect();
         return Colouring { white, n_cut_edges: 0 };
     }
@@ -129,7 +130,7 @@ mod tests {
         for m in 3..7u32 {
             for n in 3..7u32 {
                 let s = torus(m, n, 0).unwrap();
-                let c = colouring(&s);
+                let c = colouring(&s, false);
                 for d in s.darts() {
                     assert!(!(c.white[s.origin(d).index()] && c.white[s.target(d).index()]));
                 }

@@ -3,7 +3,7 @@
 use crate::assemble::{count_cells, place_cells};
 use crate::ball::{BallCore, BallTets};
 use crate::cell::{CellChoice, CellLibrary};
-use crate::colouring::{all_black, colouring};
+use crate::colouring::{Colouring, all_black, colouring};
 use crate::error::ConstructError;
 use crate::handlebody::HandlebodyTets;
 use crate::join::{fill_join, joins};
@@ -12,7 +12,8 @@ use crate::matching::light_sides;
 use crate::report::{Report, Route};
 use crate::sigma::sigma;
 use crate::split::{core_points, split_tets};
-use crate::start::start_positions;
+use crate::start::{InnerCopy, fit_to_tets, start_positions};
+use crate::strain::relieve;
 use crate::tets::{InteriorTets, TetComplex, TetRequest, others, tet_edge};
 use hexfill_mesh::{Context, HexMesh, QuadId, QuadSurface, improper_pairs};
 
@@ -38,6 +39,9 @@ pub struct Options {
     pub tets: Option<Box<dyn InteriorTets>>,
     /// Which of the built-in cells.
     pub cells: CellChoice,
+    /// Which of the choices that cost the same: an odd number exchanges the colours of a bipartite surface, half of it
+    /// orders the matching. 0 is the usual one; another may suit a surface with sharp vertices better.
+    pub variant: u64,
     /// Cells to use instead of the built-in ones.
     pub library: Option<CellLibrary>,
 }
@@ -48,6 +52,7 @@ impl std::fmt::Debug for Options {
             .field("route", &self.route)
             .field("ball_core", &self.ball_core)
             .field("cells", &self.cells)
+            .field("variant", &self.variant)
             .field("tets", &self.tets.as_ref().map(|t| t.name()))
             .finish_non_exhaustive()
     }
@@ -94,14 +99,30 @@ pub fn construct(
         return Err(ConstructError::Points { given, needed: surface.n_vertices() });
     }
     stage("colouring")?;
-    let colours = match options.route {
-        RouteChoice::Auto => colouring(surface),
+    let swap = options.variant % 2 == 1;
+    let mut colours = match options.route {
+        RouteChoice::Auto => colouring(surface, swap),
         RouteChoice::Erickson => all_black(surface),
     };
     let library = match &options.library {
         Some(library) => library,
         None => CellLibrary::built_in(options.cells),
     };
+    let relieved = match (options.cells, options.route) {
+        (CellChoice::Embeddable, RouteChoice::Auto) => points,
+        _ => None,
+    };
+    // Tetrahedra from elsewhere were made for the diagonals of one colouring.
+    if let (Some(points), None) = (relieved, &options.tets) {
+        let strain = |colours: &Colouring| {
+            let mut sides = light_sides(surface, &[], options.variant / 2, ctx).ok()?;
+            relieve(surface, points, &colours.white, &mut sides, library)
+        };
+        let other = colouring(surface, !swap);
+        if (strain(&other) < strain(&colours)) != swap {
+            colours = other;
+        }
+    }
     stage("tetrahedra")?;
     let triangles = triangles(surface, &colours);
     let request = TetRequest { n_vertices: surface.n_vertices(), triangles: &triangles, points };
@@ -116,7 +137,10 @@ pub fn construct(
     let joins = joins(surface, &complex, &boundary)?;
     stage("matching")?;
     let left_open: Vec<QuadId> = joins.iter().flat_map(|j| j.quads).collect();
-    let sides = light_sides(surface, &left_open, ctx)?;
+    let mut sides = light_sides(surface, &left_open, options.variant / 2, ctx)?;
+    if let Some(points) = relieved {
+        relieve(surface, points, &colours.white, &mut sides, library);
+    }
     stage("buffer layer")?;
     let layer = Layer::new(surface, &colours, &sides, library)?;
     stage("sigma")?;
@@ -169,7 +193,11 @@ pub fn construct(
     split_tets(&complex, &cut, &core, &mut hexes);
     debug_assert_eq!(hexes.len(), report.n_hexes());
     let mut n_vertices = core.end as usize;
-    let mut start = points.map(|p| start_positions(surface, p, &layer, library, &complex, &core));
+    let mut start = points.map(|p| {
+        let mut inner = InnerCopy::new(surface, p);
+        fit_to_tets(&mut inner, &complex);
+        start_positions(surface, p, &inner, &layer, library, &complex, &core)
+    });
     if !joins.is_empty() {
         stage("odd components")?;
         let mut first_hex = vec![first_core_hex];
@@ -240,7 +268,7 @@ pub fn core_triangles(surface: &QuadSurface, route: RouteChoice) -> Vec<[u32; 3]
     triangles(
         surface,
         &match route {
-            RouteChoice::Auto => colouring(surface),
+            RouteChoice::Auto => colouring(surface, false),
             RouteChoice::Erickson => all_black(surface),
         },
     )

@@ -28,6 +28,7 @@ mod sigma_oracle;
 mod solids;
 mod split;
 mod start;
+mod strain;
 mod tetgen;
 mod tets;
 

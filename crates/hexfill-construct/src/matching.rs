@@ -29,7 +29,8 @@ const SEARCH_LIMIT: usize = 4000;
 const FREE: Dart = Dart(u32::MAX);
 
 /// Chooses the light sides. Linear time. `left_open` are quads that get an even number of them: one in each
-/// component with an odd number of quads.
+/// component with an odd number of quads. `variant` orders choices that are equally good here: each gives another matching,
+/// as small, but with other cells meeting at a vertex.
 ///
 /// # Errors
 /// [`ConstructError::OddComponent`] if a component has an odd number of quads and none is left open;
@@ -37,6 +38,7 @@ const FREE: Dart = Dart(u32::MAX);
 pub fn light_sides(
     surface: &QuadSurface,
     left_open: &[QuadId],
+    variant: u64,
     ctx: &Context<'_>,
 ) -> Result<LightSides, ConstructError> {
     let mut open = vec![false; surface.n_quads()];
@@ -48,7 +50,7 @@ pub fn light_sides(
     if let Some(component) = size.iter().position(|s| s % 2 == 1) {
         return Err(ConstructError::OddComponent { component, given: size[component] });
     }
-    let mut mate = greedy(surface);
+    let mut mate = greedy(surface, variant);
     augment(surface, &mut mate, ctx)?;
     let mut light = vec![false; 4 * surface.n_quads()];
     for &d in mate.iter().filter(|&&d| d != FREE) {
@@ -63,9 +65,22 @@ pub fn light_sides(
     Ok(LightSides { light, n_unmatched, n_triple, open })
 }
 
+/// A fixed scramble of `x` for this variant (the finaliser of SplitMix64); none for variant 0.
+fn scramble(variant: u64, x: usize) -> u64 {
+    if variant == 0 {
+        return 0;
+    }
+    let mut z = (x as u64).wrapping_add(variant.wrapping_mul(0x9E37_79B9_7F4A_7C15));
+    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    z ^ (z >> 31)
+}
+
 /// Per quad: its dart across which it is matched, or [`FREE`].
-fn greedy(surface: &QuadSurface) -> Vec<Dart> {
+fn greedy(surface: &QuadSurface, variant: u64) -> Vec<Dart> {
     let n = surface.n_quads();
+    let mut order: Vec<u32> = (0..n as u32).collect();
+    order.sort_by_key(|&q| scramble(variant, q as usize));
     let mut mate = vec![FREE; n];
     let mut residual = vec![4u8; n];
     let mut ready: Vec<u32> = Vec::new();
@@ -75,7 +90,7 @@ fn greedy(surface: &QuadSurface) -> Vec<Dart> {
             Some(q) => q as usize,
             None if next < n => {
                 next += 1;
-                next - 1
+                order[next - 1] as usize
             }
             None => return mate,
         };
@@ -86,7 +101,11 @@ fn greedy(surface: &QuadSurface) -> Vec<Dart> {
             let other = surface.twin(d).quad().index();
             other != q && mate[other] == FREE
         });
-        let Some(d) = free.min_by_key(|&d| residual[surface.twin(d).quad().index()]) else { continue };
+        let Some(d) = free.min_by_key(|&d| {
+            (residual[surface.twin(d).quad().index()], scramble(variant, d.index().min(surface.twin(d).index())))
+        }) else {
+            continue;
+        };
         let other = surface.twin(d).quad().index();
         mate[q] = d;
         mate[other] = surface.twin(d);
@@ -196,7 +215,7 @@ mod tests {
     use hexfill_mesh::generate::{random_sphere, torus};
 
     fn check(surface: &QuadSurface) -> LightSides {
-        let l = light_sides(surface, &[], &Context::default()).unwrap();
+        let l = light_sides(surface, &[], 0, &Context::default()).unwrap();
         for d in surface.darts() {
             assert_eq!(l.light[d.index()], l.light[surface.twin(d).index()]);
         }
@@ -235,13 +254,13 @@ mod tests {
     #[test]
     fn an_odd_component_is_refused_or_left_open_at_one_quad() {
         let s = torus(3, 5, 0).unwrap();
-        let l = light_sides(&s, &[QuadId(7)], &Context::default()).unwrap();
+        let l = light_sides(&s, &[QuadId(7)], 0, &Context::default()).unwrap();
         for (q, c) in l.light.chunks(4).enumerate() {
             assert_eq!(c.iter().filter(|&&x| x).count() % 2 == 0, q == 7);
         }
 
         assert!(matches!(
-            light_sides(&torus(3, 5, 0).unwrap(), &[], &Context::default()),
+            light_sides(&torus(3, 5, 0).unwrap(), &[], 0, &Context::default()),
             Err(ConstructError::OddComponent { component: 0, given: 15 })
         ));
     }

@@ -318,7 +318,7 @@ fn outward(surface: QuadSurface, points: &[[f64; 3]]) -> QuadSurface {
 fn torus_solid(n: u32, m: u32, shift: u32, i_is_tube: bool, black: bool) -> Option<Solid> {
     let points = torus_points(n, m, shift, i_is_tube);
     let surface = outward(torus(n, m, shift).unwrap(), &points);
-    let colours = if black { all_black(&surface) } else { colouring(&surface) };
+    let colours = if black { all_black(&surface) } else { colouring(&surface, false) };
     Solid::handlebody(&surface, colours, &points)
 }
 
@@ -355,7 +355,7 @@ fn tori_straight_and_twisted() {
 fn balls() {
     for i in 0..12u64 {
         let surface = random_sphere(8 + 2 * (i as usize % 9), i).unwrap();
-        for colours in [all_black(&surface), colouring(&surface)] {
+        for colours in [all_black(&surface), colouring(&surface, false)] {
             for core in [BallCore::Centred, BallCore::Fewest] {
                 let solid = Solid::ball(&surface, colours.clone(), core);
                 assert!(solid.check());

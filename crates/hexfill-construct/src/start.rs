@@ -9,6 +9,7 @@
 
 use crate::ball::centroid;
 use crate::cell::{Cell, CellLibrary};
+use crate::given::volume;
 use crate::layer::Layer;
 use crate::pattern::{Pattern, Role};
 use crate::split::CorePoints;
@@ -100,40 +101,110 @@ fn dot(a: Point, b: Point) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Positions of the inner copy of every vertex.
-fn inner_copy(surface: &QuadSurface, points: &[Point]) -> Vec<Point> {
-    let at = |d: Dart| points[surface.origin(d).index()];
-    let corners: Vec<[u32; 3]> =
-        surface.darts().map(|d| [surface.origin(d.prev()).0, surface.origin(d).0, surface.target(d).0]).collect();
-    let centre = centroid(points, &corners);
-    let sees = |t: &[u32; 3]| {
-        let [a, b, c] = t.map(|v| sub(points[v as usize], centre));
-        dot(a, cross(b, c)) > 0.0
-    };
-    if surface.n_components() == 1 && corners.iter().all(sees) {
-        return points.iter().map(|&p| std::array::from_fn(|c| (p[c] + centre[c]) / 2.0)).collect();
-    }
-    let mut normal = vec![[0.0; 3]; points.len()];
-    let mut shortest = vec![f64::INFINITY; points.len()];
-    for d in surface.darts() {
-        let v = surface.origin(d).index();
-        let here = sub(at(d.next()), at(d));
-        let n = cross(here, sub(at(d.prev()), at(d)));
-        let length = dot(n, n).sqrt();
-        if length > 0.0 {
-            normal[v] = std::array::from_fn(|c| normal[v][c] + n[c] / length);
+/// The inner copy of every vertex: where a fan of hexes under the surface ends.
+pub(crate) struct InnerCopy {
+    outer: Vec<Point>,
+    /// Per vertex: from the surface to its inner copy.
+    step: Vec<Point>,
+}
+
+impl InnerCopy {
+    /// Half way to a point that sees the whole surface, if the centroid is one; else along the directions that all quads at
+    /// a vertex face, as far as every buffer cube keeps positive corners.
+    pub(crate) fn new(surface: &QuadSurface, points: &[Point]) -> Self {
+        let corners: Vec<[u32; 3]> =
+            surface.darts().map(|d| [surface.origin(d.prev()).0, surface.origin(d).0, surface.target(d).0]).collect();
+        let centre = centroid(points, &corners);
+        let sees = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|v| sub(points[v as usize], centre));
+            dot(a, cross(b, c)) > 0.0
+        };
+        let outer = points.to_vec();
+        if surface.n_components() == 1 && corners.iter().all(sees) {
+            let step = points.iter().map(|&p| std::array::from_fn(|c| (centre[c] - p[c]) / 2.0)).collect();
+            return Self { outer, step };
         }
-        shortest[v] = shortest[v].min(dot(here, here).sqrt());
+        let mut copy = Self { outer, step: offsets(surface, points) };
+        copy.shorten(|copy, blame| {
+            for q in 0..surface.n_quads() {
+                let corners = surface.quad(QuadId::new(q)).map(|v| v.index());
+                if !copy.cube_is_positive(&corners) {
+                    blame.extend(corners);
+                }
+            }
+        });
+        copy
     }
-    points
-        .iter()
-        .zip(normal.iter().zip(&shortest))
-        .map(|(&p, (n, &h))| {
-            let length = dot(*n, *n).sqrt();
-            let step = if length > 1e-9 && h.is_finite() { OFFSET * h / length } else { 0.0 };
-            std::array::from_fn(|c| p[c] - step * n[c])
+
+    /// Where the inner copy of vertex `v` lies.
+    pub(crate) fn at(&self, v: usize) -> Point {
+        std::array::from_fn(|c| self.outer[v][c] + self.step[v][c])
+    }
+
+    /// Halves the steps of the vertices that `faults` names until it names none, or often enough.
+    pub(crate) fn shorten(&mut self, faults: impl Fn(&Self, &mut Vec<usize>)) {
+        let mut blame = Vec::new();
+        for _ in 0..SHORTENINGS {
+            blame.clear();
+            faults(self, &mut blame);
+            if blame.is_empty() {
+                return;
+            }
+            blame.sort_unstable();
+            blame.dedup();
+            for &v in &blame {
+                self.step[v] = self.step[v].map(|x| x / 2.0);
+            }
+        }
+    }
+
+    /// Whether the frame of every corner of a buffer cube is well positive.
+    fn cube_is_positive(&self, quad: &[usize; 4]) -> bool {
+        let low = quad.map(|v| self.outer[v]);
+        let high = quad.map(|v| self.at(v));
+        let well =
+            |a: Point, b: Point, c: Point| dot(a, cross(b, c)) > 0.02 * (dot(a, a) * dot(b, b) * dot(c, c)).sqrt();
+        // Outward quads: the inner copy lies behind them.
+        (0..4).all(|k| {
+            let (next, prev) = ((k + 1) % 4, (k + 3) % 4);
+            let up = sub(low[k], high[k]);
+            well(sub(low[next], low[k]), sub(low[prev], low[k]), up)
+                && well(sub(high[next], high[k]), sub(high[prev], high[k]), up)
         })
-        .collect()
+    }
+}
+
+/// How often a step may be halved.
+const SHORTENINGS: usize = 12;
+
+/// Per vertex: a step inward, a part of the shortest edge there long, in the direction whose smallest product with the
+/// inward normals of the quads' corners is largest (found by leaning towards the worst one, over and over).
+fn offsets(surface: &QuadSurface, points: &[Point]) -> Vec<Point> {
+    let at = |d: Dart| points[surface.origin(d).index()];
+    let scaled = |p: Point, by: f64| p.map(|x| x * by);
+    let first = surface.dart_of_vertices();
+    let offset = |v: usize| -> Option<Point> {
+        let mut normals: Vec<Point> = Vec::new();
+        let mut shortest = f64::INFINITY;
+        for d in surface.round_vertex(first[v]?) {
+            let here = sub(at(d.next()), at(d));
+            let n = cross(sub(at(d.prev()), at(d)), here);
+            let length = dot(n, n).sqrt();
+            if length > 0.0 {
+                normals.push(scaled(n, 1.0 / length));
+            }
+            shortest = shortest.min(dot(here, here).sqrt());
+        }
+        let mut sum = normals.iter().fold([0.0; 3], |s, n| std::array::from_fn(|c| s[c] + n[c]));
+        for step in 0..100 {
+            let worst = normals.iter().min_by(|a, b| dot(**a, sum).total_cmp(&dot(**b, sum)))?;
+            let weight = dot(sum, sum).sqrt() / f64::from(step + 4);
+            sum = std::array::from_fn(|c| sum[c] + weight * worst[c]);
+        }
+        let length = dot(sum, sum).sqrt();
+        (length > 1e-9 && shortest.is_finite()).then(|| scaled(sum, OFFSET * shortest / length))
+    };
+    (0..points.len()).map(|v| offset(v).unwrap_or([0.0; 3])).collect()
 }
 
 /// Trilinear map of the template's cube to the hexahedron with outer corners `low` and inner corners `high`.
@@ -143,21 +214,41 @@ fn trilinear(low: &[Point; 4], high: &[Point; 4], p: Point) -> Point {
     std::array::from_fn(|c| (0..4).map(|k| weight(k) * ((1.0 - s) * low[k][c] + s * high[k][c])).sum())
 }
 
+/// Shortens the steps until no tetrahedron is inside out that is right with the surface's own positions. Tetrahedra that are
+/// only topological (a share of them is inside out from the start) are left alone.
+pub(crate) fn fit_to_tets(inner: &mut InnerCopy, complex: &TetComplex) {
+    let Some(points) = complex.points.as_ref() else { return };
+    let n_surface = inner.outer.len();
+    let right = |tet: &[u32; 4], at: &dyn Fn(u32) -> Point| volume(tet.map(at)) > 0.0;
+    let geometric: Vec<&[u32; 4]> = complex.tets.iter().filter(|t| right(t, &|v| points[v as usize])).collect();
+    if 100 * geometric.len() < 99 * complex.tets.len() {
+        return;
+    }
+    inner.shorten(|inner, blame| {
+        let at = |v: u32| if (v as usize) < n_surface { inner.at(v as usize) } else { points[v as usize] };
+        for tet in &geometric {
+            if !right(tet, &at) {
+                blame.extend(tet.iter().map(|&v| v as usize).filter(|&v| v < n_surface));
+            }
+        }
+    });
+}
+
 /// Start positions of every vertex of the mesh; those of the surface are `points`, bit for bit.
 pub(crate) fn start_positions(
     surface: &QuadSurface,
     points: &[Point],
+    inner: &InnerCopy,
     layer: &Layer<'_>,
     library: &CellLibrary,
     complex: &TetComplex,
     core: &CorePoints,
 ) -> Vec<Point> {
-    let inner = inner_copy(surface, points);
     let mut out = vec![[0.0; 3]; core.end as usize];
     out[..points.len()].copy_from_slice(points);
     // Core first: what lies on the inner facets is then written again by the cells.
     let vertex = |v: u32| match complex.points.as_ref() {
-        _ if (v as usize) < points.len() => inner[v as usize],
+        _ if (v as usize) < points.len() => inner.at(v as usize),
         Some(p) => p[v as usize],
         None => [0.0; 3],
     };
@@ -211,7 +302,7 @@ pub(crate) fn start_positions(
         let quad = QuadId::new(q);
         let Some(cell) = library.find(&layer.pattern(quad)) else { continue };
         let corners = [0, 1, 2, 3].map(|k| layer.corner(quad, k).index());
-        let (low, high) = (corners.map(|v| points[v]), corners.map(|v| inner[v]));
+        let (low, high) = (corners.map(|v| points[v]), corners.map(|v| inner.at(v)));
         for (i, &p) in templates[cell.cell].iter().enumerate() {
             let at = trilinear(&low, &high, cell.symmetry.position(p));
             match cell.boundary.get(i) {

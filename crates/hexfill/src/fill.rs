@@ -324,32 +324,46 @@ fn grow_towards(
     Ok(())
 }
 
-/// The construction for everything else.
+/// Constructions tried for each mesh asked for: some variants are isomorphic.
+const VARIANTS_PER_MESH: u64 = 4;
+
+/// The construction for everything else. Several meshes are variants of it that cost the same.
 fn construct(
     problem: &Problem,
     options: &FillOptions,
     ctx: &Context<'_>,
     result: &mut FillResult,
 ) -> Result<(), FillError> {
-    let tets: Option<Box<dyn hexfill_construct::InteriorTets>> = match &options.interior {
-        InteriorFrom::BuiltIn => None,
-        InteriorFrom::Tets(tets) => Some(Box::new(hexfill_construct::GivenTets::clone(tets))),
-        InteriorFrom::Tetgen(program) => Some(Box::new(program.clone())),
-    };
-    let how = hexfill_construct::Options { tets, cells: options.cells, ..hexfill_construct::Options::default() };
     let points = boundary_points(problem);
-    let made = match hexfill_construct::construct(&problem.surface, points.as_deref(), &how, ctx) {
-        Err(hexfill_construct::ConstructError::Stopped(reason)) => {
-            result.stop = reason;
-            result.tried.push("construction, stopped before the mesh was complete".to_owned());
-            return Ok(());
+    // Tetrahedra that are given belong to the diagonals of the first variant.
+    let given = matches!(options.interior, InteriorFrom::Tets(_));
+    let variants = if given || options.count == 1 { 1 } else { VARIANTS_PER_MESH * options.count as u64 };
+    for variant in 0..variants {
+        let tets: Option<Box<dyn hexfill_construct::InteriorTets>> = match &options.interior {
+            InteriorFrom::BuiltIn => None,
+            InteriorFrom::Tets(tets) => Some(Box::new(hexfill_construct::GivenTets::clone(tets))),
+            InteriorFrom::Tetgen(program) => Some(Box::new(program.clone())),
+        };
+        let how =
+            hexfill_construct::Options { tets, cells: options.cells, variant, ..hexfill_construct::Options::default() };
+        let made = match hexfill_construct::construct(&problem.surface, points.as_deref(), &how, ctx) {
+            Err(hexfill_construct::ConstructError::Stopped(reason)) => {
+                result.stop = reason;
+                result.tried.push("construction, stopped before the mesh was complete".to_owned());
+                return Ok(());
+            }
+            made => made?,
+        };
+        if variant == 0 {
+            result.tried.push(made.report.to_string());
         }
-        made => made?,
-    };
-    result.tried.push(made.report.to_string());
-    let (mesh, start) = simplify_construction(made.mesh, made.start, options, ctx, &mut result.tried);
-    if mesh.n_hexes() as u64 <= u64::from(options.max_hexes) {
-        accept(&problem.surface, mesh, Route::Construction, start, options, result)?;
+        let (mesh, start) = simplify_construction(made.mesh, made.start, options, ctx, &mut result.tried);
+        if mesh.n_hexes() as u64 <= u64::from(options.max_hexes) {
+            accept(&problem.surface, mesh, Route::Construction, start, options, result)?;
+        }
+        if result.meshes.len() >= options.count {
+            break;
+        }
     }
     Ok(())
 }
