@@ -146,7 +146,9 @@ pub fn simplify(mesh: &HexMesh, atlas: &Atlas, options: &SimplifyOptions, ctx: &
             best = Snapshot::of(&live);
         }
         let total = (options.balls < u64::MAX).then_some(options.balls);
-        ctx.report("simplify", report.balls, total, || format!("{} hexes of {}", live.n_hexes(), mesh.n_hexes()));
+        ctx.report("simplify", report.balls, total, || {
+            format!("now {} hexes, fewest {}, at first {}", live.n_hexes(), best.hexes.len(), mesh.n_hexes())
+        });
     }
     report.looked_up = workers.iter().map(|w| w.looked_up).sum();
     if live.n_hexes() < best.hexes.len() {
