@@ -4,6 +4,7 @@ use crate::assemble::{count_cells, place_cells};
 use crate::ball::{BallCore, BallTets};
 use crate::cell::{CellChoice, CellLibrary};
 use crate::colouring::{Colouring, all_black, colouring};
+use crate::delaunay::DelaunayTets;
 use crate::error::ConstructError;
 use crate::handlebody::HandlebodyTets;
 use crate::join::{fill_join, joins};
@@ -12,7 +13,7 @@ use crate::matching::light_sides;
 use crate::report::{Report, Route};
 use crate::sigma::sigma;
 use crate::split::{core_points, split_tets};
-use crate::start::{InnerCopy, fit_to_tets, start_positions};
+use crate::start::{InnerCopy, fit_to_tets, star_centre, start_positions};
 use crate::strain::relieve;
 use crate::tets::{InteriorTets, TetComplex, TetRequest, others, tet_edge};
 use hexfill_mesh::{Context, HexMesh, QuadId, QuadSurface, improper_pairs};
@@ -127,12 +128,19 @@ pub fn construct(
     let triangles = triangles(surface, &colours);
     let request = TetRequest { n_vertices: surface.n_vertices(), triangles: &triangles, points };
     let ball = BallTets { surface, colouring: &colours, core: options.ball_core };
-    let maker: &dyn InteriorTets = match &options.tets {
-        Some(maker) => maker.as_ref(),
-        None if surface.is_sphere() => &ball,
-        None => &HandlebodyTets,
+    let topological: &dyn InteriorTets = if surface.is_sphere() { &ball } else { &HandlebodyTets };
+    // Coordinates need tetrahedra that are right side out; a star-shaped ball has them without any search.
+    let geometric = options.cells == CellChoice::Embeddable
+        && points.is_some_and(|p| !surface.is_sphere() || star_centre(surface, p).is_none());
+    let (maker, complex) = match &options.tets {
+        Some(maker) => (maker.name(), maker.fill(&request, ctx)?),
+        None if geometric => match DelaunayTets::default().fill(&request, ctx) {
+            Ok(complex) => (DelaunayTets::default().name(), complex),
+            Err(ConstructError::Stopped(reason)) => return Err(ConstructError::Stopped(reason)),
+            Err(_) => (topological.name(), topological.fill(&request, ctx)?),
+        },
+        None => (topological.name(), topological.fill(&request, ctx)?),
     };
-    let complex = maker.fill(&request, ctx)?;
     let boundary = complex.match_boundary(&request)?;
     let joins = joins(surface, &complex, &boundary)?;
     stage("matching")?;
@@ -169,7 +177,7 @@ pub fn construct(
         n_unmatched: sides.n_unmatched,
         cells,
         n_cell_hexes,
-        tets_by: maker.name(),
+        tets_by: maker,
         n_tets: complex.tets.len(),
         n_split,
         n_core_hexes: 4 * n_split[0] + 7 * n_split[1] + 8 * n_split[2],

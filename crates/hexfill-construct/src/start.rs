@@ -112,15 +112,8 @@ impl InnerCopy {
     /// Half way to a point that sees the whole surface, if the centroid is one; else along the directions that all quads at
     /// a vertex face, as far as every buffer cube keeps positive corners.
     pub(crate) fn new(surface: &QuadSurface, points: &[Point]) -> Self {
-        let corners: Vec<[u32; 3]> =
-            surface.darts().map(|d| [surface.origin(d.prev()).0, surface.origin(d).0, surface.target(d).0]).collect();
-        let centre = centroid(points, &corners);
-        let sees = |t: &[u32; 3]| {
-            let [a, b, c] = t.map(|v| sub(points[v as usize], centre));
-            dot(a, cross(b, c)) > 0.0
-        };
         let outer = points.to_vec();
-        if surface.n_components() == 1 && corners.iter().all(sees) {
+        if let Some(centre) = star_centre(surface, points) {
             let step = points.iter().map(|&p| std::array::from_fn(|c| (centre[c] - p[c]) / 2.0)).collect();
             return Self { outer, step };
         }
@@ -172,6 +165,18 @@ impl InnerCopy {
                 && well(sub(high[next], high[k]), sub(high[prev], high[k]), up)
         })
     }
+}
+
+/// The centroid, if it sees every corner of every quad of a single component: the surface is then star-shaped.
+pub(crate) fn star_centre(surface: &QuadSurface, points: &[Point]) -> Option<Point> {
+    let corners: Vec<[u32; 3]> =
+        surface.darts().map(|d| [surface.origin(d.prev()).0, surface.origin(d).0, surface.target(d).0]).collect();
+    let centre = centroid(points, &corners);
+    let sees = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(|v| sub(points[v as usize], centre));
+        dot(a, cross(b, c)) > 0.0
+    };
+    (surface.n_components() == 1 && corners.iter().all(sees)).then_some(centre)
 }
 
 /// How often a step may be halved.
