@@ -7,7 +7,7 @@
 //! they are believed only if they are near whole numbers and the matrix has what theory demands: L - L^T, the
 //! intersection form, is invertible over Z (checked modulo 2 and modulo an odd prime).
 
-use crate::darts::{Darts, NONE, TreeCotree, tree_cotree};
+use crate::darts::{Darts, TreeCotree, tree_cotree};
 use hexfill_mesh::{Context, StopReason};
 
 /// Basis loops and their linking numbers: `numbers[i][j]` is that of loop `i` with loop `j` pushed outward.
@@ -69,37 +69,9 @@ pub(crate) fn linking(s: &Darts, points: &[Point], ctx: &Context<'_>) -> Result<
     let trees = tree_cotree(s);
     let loops: Vec<Vec<u32>> = trees.left.iter().map(|&d| trees.fundamental_loop(s, d)).collect();
     let at = |v: u32| points[v as usize];
-    // Outward push: a small part of the shortest edge at the vertex, along the sum of the corners' unit normals.
-    let push = |v: u32, first: u32| {
-        let mut normal = [0.0; 3];
-        let mut shortest = f64::INFINITY;
-        for d in s.round(first) {
-            let here = sub(at(s.target(d)), at(v));
-            let mut last = d;
-            while s.next(last) != d {
-                last = s.next(last);
-            }
-            let there = sub(at(s.origin[last as usize]), at(v));
-            shortest = shortest.min(dot(here, here).sqrt());
-            if let Some(n) = unit(cross(here, there)) {
-                normal = [normal[0] + n[0], normal[1] + n[1], normal[2] + n[2]];
-            }
-        }
-        unit(normal).map(|n| {
-            let p = at(v);
-            std::array::from_fn(|c| p[c] + 1e-3 * shortest * n[c])
-        })
-    };
-    let first = s.vertex_darts();
     let mut pushed: Vec<Vec<Point>> = Vec::new();
     for l in &loops {
-        let mut line = Vec::with_capacity(l.len());
-        for &d in l {
-            let v = s.origin[d as usize];
-            debug_assert_ne!(first[v as usize], NONE);
-            line.push(push(v, first[v as usize]).ok_or(failed("a vertex has no outward direction"))?);
-        }
-        pushed.push(line);
+        pushed.push(push(s, points, l).ok_or(failed("a face has no normal"))?);
     }
     let mut numbers = vec![vec![0i64; loops.len()]; loops.len()];
     for (i, l) in loops.iter().enumerate() {
@@ -131,6 +103,66 @@ pub(crate) fn linking(s: &Darts, points: &[Point], ctx: &Context<'_>) -> Result<
         }
     }
     Ok(Linking { trees, loops, numbers })
+}
+
+/// The loop pushed outward: over the faces on its left, and over the edges between them round its vertices. Vertex normals
+/// would not do: at a saddle they may lie in the surface.
+fn push(s: &Darts, points: &[Point], path: &[u32]) -> Option<Vec<Point>> {
+    let at = |v: u32| points[v as usize];
+    let ends = |d: u32| (at(s.origin[d as usize]), at(s.target(d)));
+    // Corner of a face at the origin of a dart: both its sides, and the normal (of the whole face where the corner is straight).
+    let sides = |d: u32| {
+        let mut last = d;
+        while s.next(last) != d {
+            last = s.next(last);
+        }
+        let (here, there) = ends(d);
+        (sub(there, here), sub(at(s.origin[last as usize]), here))
+    };
+    let normal = |d: u32| {
+        let (first, mut e, mut sum) = (s.face(d) * s.k, s.face(d) * s.k, [0.0; 3]);
+        while e < first + s.k {
+            let (a, b) = sides(e);
+            let n = cross(a, b);
+            sum = [sum[0] + n[0], sum[1] + n[1], sum[2] + n[2]];
+            e += 1;
+        }
+        unit(sum)
+    };
+    let along = |p: Point, parts: [(f64, Point); 2]| -> Point {
+        std::array::from_fn(|c| p[c] + parts[0].0 * parts[0].1[c] + parts[1].0 * parts[1].1[c])
+    };
+    let length = |a: Point| dot(a, a).sqrt();
+    // Over the corner of a face at the origin of `d`.
+    let over_corner = |d: u32| {
+        let (a, b) = sides(d);
+        let scale = 1e-2 * length(a).min(length(b));
+        let n = normal(d)?;
+        // Left of the side that leaves and of the side that comes; right at straight and at reflex corners as well.
+        let (u, w) = (cross(n, unit(a)?), cross(unit(b)?, n));
+        let inward = unit([u[0] + w[0], u[1] + w[1], u[2] + w[2]])?;
+        Some(along(at(s.origin[d as usize]), [(scale, inward), (1e-2 * scale, n)]))
+    };
+    // Over the edge of `d`, near its origin.
+    let over_edge = |d: u32| {
+        let (a, b) = ends(d);
+        let (m, n) = (normal(d)?, normal(s.twin[d as usize])?);
+        let up = unit([m[0] + n[0], m[1] + n[1], m[2] + n[2]])?;
+        Some(along(a, [(1e-2, sub(b, a)), (1e-4 * length(sub(b, a)), up)]))
+    };
+    let mut line = Vec::new();
+    for (k, &d) in path.iter().enumerate() {
+        let out = path[(k + 1) % path.len()];
+        // Round the target of `d`, through the faces on the left.
+        let mut at = s.next(d);
+        line.push(over_corner(at)?);
+        while at != out {
+            line.push(over_edge(at)?);
+            at = s.next(s.twin[at as usize]);
+            line.push(over_corner(at)?);
+        }
+    }
+    Some(line)
 }
 
 /// Rank modulo a prime.
