@@ -213,6 +213,10 @@ fn best_direction(normals: &[Vector]) -> f64 {
     };
     for (i, &a) in normals.iter().enumerate() {
         consider(a);
+        // Opposite normals: the best is any direction across them, with value 0.
+        for axis in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] {
+            consider(cross(a, axis));
+        }
         for (j, &b) in normals.iter().enumerate().take(i) {
             let along = sub(b, a);
             // The point of the line a b nearest to the origin: equal products with a and b, within their plane.
@@ -249,6 +253,15 @@ mod tests {
             }
             assert!(sampled <= exact + 1e-12 && exact < sampled + 0.05, "{exact} {sampled}");
         }
+    }
+
+    #[test]
+    fn opposite_normals_leave_zero_not_less() {
+        let (up, down) = ([0.0, 0.0, 1.0], [0.0, 0.0, -0.5]);
+        assert_eq!(best_direction(&[up, down]), 0.0);
+        // A third normal is met by turning across the first two.
+        assert!(best_direction(&[up, down, [0.6, 0.0, 0.8]]).abs() < 1e-12);
+        assert!(best_direction(&[up, down, [0.6, 0.0, 0.0], [-0.6, 0.0, 0.0]]).abs() < 1e-12);
     }
 
     #[test]
