@@ -409,7 +409,7 @@ impl<'a> Conforming<'a> {
             if is_flat[r] {
                 continue;
             }
-            if (behind > 0 && before > 0) || (behind > 0 && is_far[r]) {
+            if behind > 0 && (before > 0 || is_far[r]) {
                 return Err("the surface meets itself or faces inward: its sides contradict each other"
                     .to_owned()
                     .into());

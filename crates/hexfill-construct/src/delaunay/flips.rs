@@ -4,7 +4,7 @@
 //! takes them as they come), and such tets bar every move of their corners. Removing an edge (Freitag and Ollivier-Gooch 1997)
 //! tries all triangulations of the ring of vertices round it, by dynamic programming (Klincsek 1980). No flip touches the boundary.
 
-use super::mesh::NONE;
+use super::mesh::{NONE, Point, cross, dot, sub};
 use super::solid::{FLOOR, Solid};
 use crate::tets::{OUTWARD, TET_EDGES};
 use hexfill_mesh::{Context, StopReason};
@@ -12,11 +12,14 @@ use hexfill_mesh::{Context, StopReason};
 /// Tets of less quality are worked on.
 const GOOD: f64 = 0.05;
 
+/// Tets of less quality are worth a new point.
+const FLAT: f64 = 1e-4;
+
 /// Longest ring that is triangulated anew.
 const RING: usize = 10;
 
 /// Most passes over the bad tets.
-const PASSES: usize = 6;
+const PASSES: usize = 4;
 
 impl Solid {
     /// Flips and moves until no bad tet gets better that way.
@@ -64,6 +67,9 @@ impl Solid {
             return true;
         }
         let before = self.quality(tet);
+        if before > FLOOR {
+            return false;
+        }
         for v in tet {
             if v as usize >= self.n_surface && self.faces_at[v as usize].is_empty() {
                 self.smooth(v);
@@ -91,6 +97,77 @@ impl Solid {
                     break;
                 }
             }
+        }
+    }
+
+    /// Last resort against flat tets: splits an inner edge of each and moves the new point to where they get volume.
+    pub fn split_flat(&mut self, ctx: &Context<'_>) -> Result<(), StopReason> {
+        let is_flat = |solid: &Self, t: usize| solid.tets[t][0] != NONE && solid.quality(solid.tets[t]) < FLAT;
+        let flat: Vec<usize> = (0..self.tets.len()).filter(|&t| is_flat(self, t)).collect();
+        let any = !flat.is_empty();
+        for t in flat {
+            if let Some(reason) = ctx.stop() {
+                return Err(reason);
+            }
+            // One split may have mended its neighbour.
+            if is_flat(self, t) {
+                self.split_edge_of(t);
+            }
+        }
+        if any { self.improve(ctx) } else { Ok(()) }
+    }
+
+    fn split_edge_of(&mut self, t: usize) {
+        let tet = self.tets[t];
+        let v = self.points.len() as u32;
+        let mut best: Option<(f64, Point, Vec<u32>, Vec<[u32; 4]>)> = None;
+        for [i, j] in TET_EDGES {
+            let (a, b) = (tet[i], tet[j]);
+            if self.faces_at[a as usize].iter().any(|&f| self.faces[f as usize].0.contains(&b)) {
+                continue;
+            }
+            let old: Vec<u32> =
+                self.tets_at[a as usize].iter().copied().filter(|&u| self.tets[u as usize].contains(&b)).collect();
+            let with = |end: u32| old.iter().map(move |&u| (u, end));
+            let new: Vec<[u32; 4]> = with(a)
+                .chain(with(b))
+                .map(|(u, end)| self.tets[u as usize].map(|w| if w == end { v } else { w }))
+                .collect();
+            let (p, q) = (self.points[a as usize], self.points[b as usize]);
+            let middle: Point = std::array::from_fn(|c| (p[c] + q[c]) / 2.0);
+            let [x, y, z] = [0, 1, 2].map(|k| self.points[tet[k + 1] as usize]);
+            let normals = OUTWARD.map(|f| {
+                let [x, y, z] = f.map(|k| self.points[tet[k] as usize]);
+                cross(sub(y, x), sub(z, x))
+            });
+            let reach = [sub(p, q), sub(x, y), sub(y, z)].map(|d| dot(d, d)).into_iter().fold(0.0, f64::max).sqrt();
+            let mut found = (0.0, middle, 0.0);
+            for normal in normals {
+                let length = dot(normal, normal).sqrt();
+                let mut step = reach;
+                for _ in 0..20 {
+                    let at = std::array::from_fn(|c| middle[c] - step * normal[c] / length);
+                    let here = self.least(&new, v, at);
+                    if here > found.0 {
+                        found = (here, at, step);
+                    }
+                    step /= 2.0;
+                }
+            }
+            if found.0 > 0.0 {
+                let at = self.climb(&new, v, found);
+                let here = self.least(&new, v, at);
+                if best.as_ref().is_none_or(|b| here > b.0) {
+                    best = Some((here, at, old, new));
+                }
+            }
+        }
+        let Some((worst, at, old, new)) = best else { return };
+        if worst > 2.0 * self.quality(tet) {
+            self.points.push(at);
+            self.tets_at.push(Vec::new());
+            self.faces_at.push(Vec::new());
+            self.replace(&old, &new);
         }
     }
 
@@ -143,30 +220,30 @@ impl Solid {
             return None;
         }
         let both = |i: usize, j: usize, k: usize| [[a, ring[i], ring[j], ring[k]], [b, ring[i], ring[k], ring[j]]];
-        // best[i][j]: the ring from i to j closed by the edge i j, its worst tet and where the triangle at that edge ends.
-        let mut best = [[(f64::INFINITY, 0usize); RING]; RING];
+        // Entry i n + j: the ring from i to j closed by the edge i j, its worst tet and where the triangle at that edge ends.
+        let mut best = vec![(f64::INFINITY, 0); n * n];
         for width in 2..n {
             for i in 0..n - width {
                 let j = i + width;
                 let mut found = (f64::NEG_INFINITY, 0);
                 for k in i + 1..j {
                     let [p, q] = both(i, k, j).map(|t| self.quality(t));
-                    let worst = p.min(q).min(best[i][k].0).min(best[k][j].0);
+                    let worst = p.min(q).min(best[i * n + k].0).min(best[k * n + j].0);
                     if worst > found.0 {
                         found = (worst, k);
                     }
                 }
-                best[i][j] = found;
+                best[i * n + j] = found;
             }
         }
-        if best[0][n - 1].0 <= 0.0 {
+        if best[n - 1].0 <= 0.0 {
             return None;
         }
         let mut new = Vec::with_capacity(2 * n - 4);
         let mut stack = vec![(0, n - 1)];
         while let Some((i, j)) = stack.pop() {
             if j - i >= 2 {
-                let k = best[i][j].1;
+                let k = best[i * n + j].1;
                 new.extend(both(i, k, j));
                 stack.extend([(i, k), (k, j)]);
             }

@@ -26,7 +26,7 @@ pub(crate) struct Solid {
     pub(super) tets: Vec<[u32; 4]>,
     pub(super) tets_at: Vec<Vec<u32>>,
     /// The boundary, outward; a removed face has [`NONE`] first.
-    faces: Vec<([u32; 3], u32)>,
+    pub(super) faces: Vec<([u32; 3], u32)>,
     pub(super) faces_at: Vec<Vec<u32>>,
     /// Per triangle of the surface its unit outward normal.
     normals: Vec<Point>,
@@ -84,7 +84,7 @@ impl Solid {
     }
 
     /// Least quality of tets, of which `v` is taken to be at `p`.
-    fn least(&self, tets: &[[u32; 4]], v: u32, p: Point) -> f64 {
+    pub(super) fn least(&self, tets: &[[u32; 4]], v: u32, p: Point) -> f64 {
         let mut least = f64::INFINITY;
         for tet in tets {
             least = least.min(quality(tet.map(|w| if w == v { p } else { self.at(w) })));
@@ -362,7 +362,7 @@ impl Solid {
     }
 
     /// Raises the least quality of tets by moving `v` from a place, with steps of at most a given length.
-    fn climb(&self, tets: &[[u32; 4]], v: u32, (mut q, mut p, mut step): (f64, Point, f64)) -> Point {
+    pub(super) fn climb(&self, tets: &[[u32; 4]], v: u32, (mut q, mut p, mut step): (f64, Point, f64)) -> Point {
         const DIRECTIONS: [Point; 7] = [
             [1.0, 0.0, 0.0],
             [0.0, 1.0, 0.0],
@@ -415,8 +415,12 @@ impl Solid {
             }
             ctx.report("points removed", round, None, || format!("{removed}"));
             self.save_tets();
+            if removed == 0 {
+                break;
+            }
         }
-        self.improve(ctx)
+        self.improve(ctx)?;
+        self.split_flat(ctx)
     }
 
     fn draw_inside(&mut self, v: u32) -> bool {
@@ -446,9 +450,9 @@ impl Solid {
     pub fn finish(self) -> (Vec<Point>, Vec<[u32; 4]>, f64) {
         let mut number: Vec<u32> = (0..self.points.len() as u32).collect();
         let mut points = self.points[..self.n_surface].to_vec();
-        for v in self.n_surface..self.points.len() {
+        for (v, number) in number.iter_mut().enumerate().skip(self.n_surface) {
             if !self.tets_at[v].is_empty() {
-                number[v] = points.len() as u32;
+                *number = points.len() as u32;
                 points.push(self.points[v]);
             }
         }
