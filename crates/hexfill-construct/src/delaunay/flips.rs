@@ -21,6 +21,9 @@ const RING: usize = 10;
 /// Most passes over the bad tets.
 const PASSES: usize = 4;
 
+/// Tets to take out, and those that fill the same place.
+type Exchange = (Vec<u32>, Vec<[u32; 4]>);
+
 impl Solid {
     /// Flips and moves until no bad tet gets better that way.
     pub fn improve(&mut self, ctx: &Context<'_>) -> Result<(), StopReason> {
@@ -120,7 +123,7 @@ impl Solid {
     fn split_edge_of(&mut self, t: usize) {
         let tet = self.tets[t];
         let v = self.points.len() as u32;
-        let mut best: Option<(f64, Point, Vec<u32>, Vec<[u32; 4]>)> = None;
+        let mut best: Option<(f64, Point, Exchange)> = None;
         for [i, j] in TET_EDGES {
             let (a, b) = (tet[i], tet[j]);
             if self.faces_at[a as usize].iter().any(|&f| self.faces[f as usize].0.contains(&b)) {
@@ -158,11 +161,11 @@ impl Solid {
                 let at = self.climb(&new, v, found);
                 let here = self.least(&new, v, at);
                 if best.as_ref().is_none_or(|b| here > b.0) {
-                    best = Some((here, at, old, new));
+                    best = Some((here, at, (old, new)));
                 }
             }
         }
-        let Some((worst, at, old, new)) = best else { return };
+        let Some((worst, at, (old, new))) = best else { return };
         if worst > 2.0 * self.quality(tet) {
             self.points.push(at);
             self.tets_at.push(Vec::new());
@@ -185,7 +188,7 @@ impl Solid {
     }
 
     /// The tets round an inner edge, and the best ones that fill the same place without it.
-    fn without_edge(&self, a: u32, b: u32) -> Option<(Vec<u32>, Vec<[u32; 4]>)> {
+    fn without_edge(&self, a: u32, b: u32) -> Option<Exchange> {
         let old: Vec<u32> =
             self.tets_at[a as usize].iter().copied().filter(|&t| self.tets[t as usize].contains(&b)).collect();
         if old.len() > RING || old.len() < 3 {
@@ -252,7 +255,7 @@ impl Solid {
     }
 
     /// The two tets at an inner face, and the three round the edge between their far corners.
-    fn without_face(&self, t: u32, i: usize) -> Option<(Vec<u32>, Vec<[u32; 4]>)> {
+    fn without_face(&self, t: u32, i: usize) -> Option<Exchange> {
         let tet = self.tets[t as usize];
         let [x, y, z] = OUTWARD[i].map(|k| tet[k]);
         let beside = self.tets_at[x as usize].iter().copied().find(|&u| {
