@@ -13,7 +13,7 @@ use crate::matching::light_sides;
 use crate::report::{Report, Route};
 use crate::sigma::sigma;
 use crate::split::{core_points, split_tets};
-use crate::start::{InnerCopy, fit_to_tets, star_centre, start_positions};
+use crate::start::{InnerCopy, star_centre, start_positions};
 use crate::strain::relieve;
 use crate::tets::{InteriorTets, TetComplex, TetRequest, others, tet_edge};
 use hexfill_mesh::{Context, HexMesh, QuadId, QuadSurface, improper_pairs};
@@ -128,16 +128,16 @@ pub fn construct(
     let triangles = triangles(surface, &colours);
     let request = TetRequest { n_vertices: surface.n_vertices(), triangles: &triangles, points };
     let ball = BallTets { surface, colouring: &colours, core: options.ball_core };
+    let mut inner = points.map(|p| InnerCopy::new(surface, p));
     let topological: &dyn InteriorTets = if surface.is_sphere() { &ball } else { &HandlebodyTets };
     // Coordinates need tetrahedra that are right side out; a star-shaped ball has them without any search.
     let geometric = options.cells == CellChoice::Embeddable
         && points.is_some_and(|p| !surface.is_sphere() || star_centre(surface, p).is_none());
     let (maker, complex) = match &options.tets {
         Some(maker) => (maker.name(), maker.fill(&request, ctx)?),
-        None if geometric => match DelaunayTets::default().fill(&request, ctx) {
-            Ok(complex) => (DelaunayTets::default().name(), complex),
-            Err(ConstructError::Stopped(reason)) => return Err(ConstructError::Stopped(reason)),
-            Err(_) => (topological.name(), topological.fill(&request, ctx)?),
+        None if geometric => match geometric_tets(&request, inner.as_ref(), ctx)? {
+            Some(complex) => (DelaunayTets::default().name(), complex),
+            None => (topological.name(), topological.fill(&request, ctx)?),
         },
         None => (topological.name(), topological.fill(&request, ctx)?),
     };
@@ -201,10 +201,9 @@ pub fn construct(
     split_tets(&complex, &cut, &core, &mut hexes);
     debug_assert_eq!(hexes.len(), report.n_hexes());
     let mut n_vertices = core.end as usize;
-    let mut start = points.map(|p| {
-        let mut inner = InnerCopy::new(surface, p);
-        fit_to_tets(&mut inner, &complex);
-        start_positions(surface, p, &inner, &layer, library, &complex, &core)
+    let mut start = inner.as_mut().map(|inner| {
+        inner.fit_to_tets(surface, &complex);
+        start_positions(surface, inner, &layer, library, &complex, &core)
     });
     if !joins.is_empty() {
         stage("odd components")?;
@@ -244,6 +243,24 @@ pub fn construct(
     drop((complex, core, cut, triangles));
     let mesh = HexMesh::try_new(n_vertices, &hexes)?;
     Ok(Construction { mesh, report, start })
+}
+
+/// Tetrahedra with positive volumes between the inner copies of the vertices, else between the vertices themselves (the inner
+/// copy of a thin solid may meet itself); `None` if neither has any.
+fn geometric_tets(
+    request: &TetRequest<'_>,
+    inner: Option<&InnerCopy>,
+    ctx: &Context<'_>,
+) -> Result<Option<TetComplex>, ConstructError> {
+    let inner = inner.map(InnerCopy::points);
+    for points in [inner.as_deref(), request.points] {
+        match DelaunayTets::default().fill(&TetRequest { points, ..*request }, ctx) {
+            Err(ConstructError::Stopped(reason)) => return Err(ConstructError::Stopped(reason)),
+            Err(_) => {}
+            Ok(complex) => return Ok(Some(complex)),
+        }
+    }
+    Ok(None)
 }
 
 /// Renumbers the inner vertices that hexes use, in order; returns the number of vertices.

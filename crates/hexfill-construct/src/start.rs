@@ -106,6 +106,8 @@ pub(crate) struct InnerCopy {
     outer: Vec<Point>,
     /// Per vertex: from the surface to its inner copy.
     step: Vec<Point>,
+    /// Per vertex: a dart that starts there.
+    first: Vec<Option<Dart>>,
 }
 
 impl InnerCopy {
@@ -113,12 +115,13 @@ impl InnerCopy {
     /// a vertex face, as far as every buffer cube keeps positive corners.
     pub(crate) fn new(surface: &QuadSurface, points: &[Point]) -> Self {
         let outer = points.to_vec();
+        let first = surface.dart_of_vertices();
         if let Some(centre) = star_centre(surface, points) {
             let step = points.iter().map(|&p| std::array::from_fn(|c| (centre[c] - p[c]) / 2.0)).collect();
-            return Self { outer, step };
+            return Self { outer, step, first };
         }
-        let mut copy = Self { outer, step: offsets(surface, points) };
-        copy.shorten(|copy, blame| {
+        let mut copy = Self { outer, step: offsets(surface, points), first };
+        copy.shorten(surface, |copy, blame| {
             for q in 0..surface.n_quads() {
                 let corners = surface.quad(QuadId::new(q)).map(|v| v.index());
                 if !copy.cube_is_positive(&corners) {
@@ -134,8 +137,36 @@ impl InnerCopy {
         std::array::from_fn(|c| self.outer[v][c] + self.step[v][c])
     }
 
-    /// Halves the steps of the vertices that `faults` names until it names none, or often enough.
-    pub(crate) fn shorten(&mut self, faults: impl Fn(&Self, &mut Vec<usize>)) {
+    /// All of them.
+    pub(crate) fn points(&self) -> Vec<Point> {
+        (0..self.outer.len()).map(|v| self.at(v)).collect()
+    }
+
+    /// Shortens the steps until no tetrahedron is inside out that is right with the surface's own positions. Tetrahedra that
+    /// are only topological (a share of them is inside out from the start) are left alone.
+    pub(crate) fn fit_to_tets(&mut self, surface: &QuadSurface, complex: &TetComplex) {
+        let Some(points) = complex.points.as_ref() else { return };
+        let n_surface = self.outer.len();
+        let right = |tet: &[u32; 4], at: &dyn Fn(u32) -> Point| volume(tet.map(at)) > 0.0;
+        let geometric: Vec<&[u32; 4]> = complex.tets.iter().filter(|t| right(t, &|v| points[v as usize])).collect();
+        if 100 * geometric.len() < 99 * complex.tets.len() {
+            return;
+        }
+        self.shorten(surface, |inner, blame| {
+            let at = |v: u32| if (v as usize) < n_surface { inner.at(v as usize) } else { points[v as usize] };
+            for tet in &geometric {
+                if !right(tet, &at) {
+                    blame.extend(tet.iter().map(|&v| v as usize).filter(|&v| v < n_surface));
+                }
+            }
+        });
+    }
+
+    /// Halves the steps of the vertices that `faults` names until it names none, or often enough; a step that is much longer
+    /// than a neighbour's is shortened as well, so that the layer's cubes keep their shape.
+    fn shorten(&mut self, surface: &QuadSurface, faults: impl Fn(&Self, &mut Vec<usize>)) {
+        const STEEPEST: f64 = 1.5;
+        let length = |p: &Point| dot(*p, *p).sqrt();
         let mut blame = Vec::new();
         for _ in 0..SHORTENINGS {
             blame.clear();
@@ -147,6 +178,19 @@ impl InnerCopy {
             blame.dedup();
             for &v in &blame {
                 self.step[v] = self.step[v].map(|x| x / 2.0);
+            }
+            // Outward from what was shortened; every vertex is entered only to become shorter.
+            while let Some(v) = blame.pop() {
+                let Some(start) = self.first[v].filter(|_| self.step[v] != [0.0; 3]) else { continue };
+                for d in surface.round_vertex(start) {
+                    let w = surface.target(d).index();
+                    let most = STEEPEST * length(&self.step[v]);
+                    let now = length(&self.step[w]);
+                    if now > most * (1.0 + 1e-9) {
+                        self.step[w] = self.step[w].map(|x| x * (most / now));
+                        blame.push(w);
+                    }
+                }
             }
         }
     }
@@ -219,36 +263,16 @@ fn trilinear(low: &[Point; 4], high: &[Point; 4], p: Point) -> Point {
     std::array::from_fn(|c| (0..4).map(|k| weight(k) * ((1.0 - s) * low[k][c] + s * high[k][c])).sum())
 }
 
-/// Shortens the steps until no tetrahedron is inside out that is right with the surface's own positions. Tetrahedra that are
-/// only topological (a share of them is inside out from the start) are left alone.
-pub(crate) fn fit_to_tets(inner: &mut InnerCopy, complex: &TetComplex) {
-    let Some(points) = complex.points.as_ref() else { return };
-    let n_surface = inner.outer.len();
-    let right = |tet: &[u32; 4], at: &dyn Fn(u32) -> Point| volume(tet.map(at)) > 0.0;
-    let geometric: Vec<&[u32; 4]> = complex.tets.iter().filter(|t| right(t, &|v| points[v as usize])).collect();
-    if 100 * geometric.len() < 99 * complex.tets.len() {
-        return;
-    }
-    inner.shorten(|inner, blame| {
-        let at = |v: u32| if (v as usize) < n_surface { inner.at(v as usize) } else { points[v as usize] };
-        for tet in &geometric {
-            if !right(tet, &at) {
-                blame.extend(tet.iter().map(|&v| v as usize).filter(|&v| v < n_surface));
-            }
-        }
-    });
-}
-
-/// Start positions of every vertex of the mesh; those of the surface are `points`, bit for bit.
+/// Start positions of every vertex of the mesh; those of the surface are its own, bit for bit.
 pub(crate) fn start_positions(
     surface: &QuadSurface,
-    points: &[Point],
     inner: &InnerCopy,
     layer: &Layer<'_>,
     library: &CellLibrary,
     complex: &TetComplex,
     core: &CorePoints,
 ) -> Vec<Point> {
+    let points = inner.outer.as_slice();
     let mut out = vec![[0.0; 3]; core.end as usize];
     out[..points.len()].copy_from_slice(points);
     // Core first: what lies on the inner facets is then written again by the cells.

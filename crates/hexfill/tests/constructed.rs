@@ -1,0 +1,53 @@
+//! Constructed meshes have coordinates: det J > 0 certified in every hex, from the surface alone.
+
+use hexfill::{Context, FillOptions, Placed, Problem, Route, Strategy};
+use hexfill_mesh::generate::torus;
+
+fn placed(problem: &Problem, embed: bool) -> Placed {
+    let options = FillOptions { strategy: Strategy::Construct, ..FillOptions::default() };
+    let ctx = Context::default();
+    let result = hexfill::fill(problem, &options, &ctx).unwrap();
+    assert_eq!(result.meshes[0].route, Route::Construction);
+    let boundary = hexfill::boundary_points(problem).unwrap();
+    let how = hexfill::embed::Options::default();
+    let placed = hexfill::place(&result.meshes[0], &boundary, embed.then_some(&how), &ctx);
+    assert_eq!(placed.points[..boundary.len()], boundary[..]);
+    placed
+}
+
+/// A torus of `n * m` quads round the z axis.
+fn round_torus(n: u32, m: u32) -> Problem {
+    let surface = torus(n, m, 0).unwrap();
+    let around = |k: u32, of: u32| (f64::from(k) / f64::from(of) * std::f64::consts::TAU).sin_cos();
+    let points: Vec<[f64; 3]> = (0..n * m)
+        .map(|v| {
+            let ((s, c), (t, u)) = (around(v % n, n), around(v / n, m));
+            [(3.0 + u) * c, (3.0 + u) * s, t]
+        })
+        .collect();
+    let quads = surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
+    let data = hexfill::io::MeshData { points, quads, has_coordinates: true, ..Default::default() };
+    Problem::from_data("torus", &data).unwrap()
+}
+
+#[test]
+fn cube_spindle_and_pyramid_reach_a_tenth() {
+    for name in [":cube", ":octagonal-spindle", ":schneiders-pyramid"] {
+        let report = placed(&Problem::load(name, None).unwrap(), true).report();
+        assert_eq!(report.certified, report.hexes, "{name}");
+        assert!(report.certified_scaled_jacobian >= 0.1, "{name}: {}", report.certified_scaled_jacobian);
+    }
+}
+
+#[test]
+fn star_shaped_surfaces_are_valid_as_constructed() {
+    for name in [":cube", ":octagonal-spindle", ":schneiders-pyramid"] {
+        assert!(placed(&Problem::load(name, None).unwrap(), false).is_certified(), "{name}");
+    }
+}
+
+#[test]
+fn a_torus_is_valid_once_embedded() {
+    // Tetrahedra of the core by `DelaunayTets`; a torus is not star-shaped.
+    assert!(placed(&round_torus(16, 8), true).is_certified());
+}
