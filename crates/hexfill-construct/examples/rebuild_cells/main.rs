@@ -5,6 +5,8 @@
 //! side facet blocked, until a hole is in the atlas with a ball that avoids the hole's blocked pairs. Per class of holes
 //! the smallest sets of blocked pairs are kept, none a subset of another (`WIDTH` of them), and per number of quads the
 //! `BEAM` holes with the fewest. `FREE=1` blocks nothing at first: a filling that is not wall-safe is pillowed when it is loaded.
+//! `FLAT=1` blocks the pairs of the inner facet as well: no hex then has two quads on one flat facet, so the cell may embed
+//! (see the example `place_cells` of `hexfill`).
 //! The environment variables `ATLAS` (a file of `hexfill atlas build`; else one is grown, `LEVELS` and `GROWTH_WIDTH`),
 //! `WIDTH`, `DEPTH`, `BEAM` and `CAP` (quads of a hole) set the effort.
 
@@ -60,8 +62,15 @@ fn first_hole(pattern: &Pattern, roles: &[Role], walls: bool) -> Option<Hole> {
     let surface = QuadSurface::try_new(roles.len(), &quads).ok()?;
     let (mut cavity, ids) = Cavity::from_surface(&surface.inverted())?;
     let joined = |a: u32, b: u32| quads.iter().any(|q| q.contains(&a) && q.contains(&b));
-    for k in (0..4).filter(|_| walls) {
-        let points: Vec<u32> = pattern.side_points(k).into_iter().map(index).collect();
+    let mut facets: Vec<Vec<Role>> = (0..4).filter(|_| walls).map(|k| pattern.side_points(k)).collect();
+    if setting("FLAT", 0) == 1 {
+        let mut inner: Vec<Role> = (0..2).flat_map(|t| pattern.triangle_quads(t)).flatten().collect();
+        inner.sort_unstable();
+        inner.dedup();
+        facets.push(inner);
+    }
+    for facet in facets {
+        let points: Vec<u32> = facet.into_iter().map(index).collect();
         for (i, &a) in points.iter().enumerate() {
             for &b in &points[..i] {
                 if !joined(a, b) {

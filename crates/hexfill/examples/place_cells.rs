@@ -1,0 +1,142 @@
+//! Gives buffer cells positions: `place_cells SECONDS CELL.cell ...` looks for points of the sides and of the inner facet with which
+//! a bipartite cell embeds best in the cube, and writes `CELL.cell.placed`.
+//!
+//! Sides are planar and congruent, so that neighbours fit. The 14 parameters are raised for the star bound first, then
+//! for the scaled Jacobian of an embedding from the last one, by an evolution strategy with one parent and one child; in the end
+//! the inner points are balanced. `SIDES=m,e,yu,yz,zu,zz,xu,xz` keeps the sides of another cell.
+
+use hexfill::Context;
+use hexfill::construct::{Cell, Pattern, Role};
+use hexfill::embed::{Embedding, Objective, Options, embed, star_bounds};
+use hexfill_mesh::HexMesh;
+use std::time::{Duration, Instant};
+
+type Point = [f64; 3];
+/// Heights and places: m; e; y (u, z); z (u, z); x (u, z); d (x, y); f0 (x, y); f1 (x, y).
+type Parameters = [f64; 14];
+
+const START: Parameters = [0.4, 0.5, 0.35, 0.7, 0.0, 0.5, -0.1, -0.1, 0.05, 0.05, -0.4, 0.4, 0.4, -0.4];
+const CORNERS: [[f64; 2]; 4] = [[-1.0, -1.0], [-1.0, 1.0], [1.0, 1.0], [1.0, -1.0]];
+
+fn position(role: Role, p: &Parameters) -> Point {
+    let at = |k: u8, z: f64| [CORNERS[usize::from(k)][0], CORNERS[usize::from(k)][1], z];
+    let on_side = |k: u8, u: f64, z: f64| {
+        let (a, b) = (at(Pattern::diagonal_corner(k), z), at(Pattern::odd_corner(k), z));
+        let s = (1.0 + u) / 2.0;
+        [a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1]), z]
+    };
+    match role {
+        Role::Outer(k) => at(k, -1.0),
+        Role::Inner(k) => at(k, 1.0),
+        Role::Middle(k) => at(k, p[0]),
+        Role::Edge(k) => on_side(k, p[1], 1.0),
+        Role::Y(k) => on_side(k, p[2], p[3]),
+        Role::Z(k) => on_side(k, p[4], p[5]),
+        Role::X(k) => on_side(k, p[6], p[7]),
+        Role::Diagonal => [p[8], p[9], 1.0],
+        Role::Face(0) => [p[10], p[11], 1.0],
+        Role::Face(_) => [p[12], p[13], 1.0],
+        _ => [0.0; 3],
+    }
+}
+
+/// Two numbers a call, normally distributed (SplitMix64, Box and Muller).
+struct Normal(u64);
+
+impl Normal {
+    fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn next(&mut self) -> f64 {
+        (-2.0 * (1.0 - self.unit()).ln()).sqrt() * (std::f64::consts::TAU * self.unit()).cos()
+    }
+
+    fn child(&mut self, parent: &Parameters, fixed: usize, width: f64) -> Parameters {
+        let mut child = *parent;
+        child[fixed..].iter_mut().for_each(|x| *x += width * self.next());
+        child
+    }
+}
+
+fn quality(e: &Embedding) -> (i64, f64) {
+    (-(e.report.n_invalid as i64), e.report.scaled_jacobian)
+}
+
+fn place(cell: &Cell, time: Duration, sides: &[f64]) -> Option<(Parameters, Embedding)> {
+    let hexes: Vec<[u32; 8]> = cell.hexes.iter().map(|h| h.map(u32::from)).collect();
+    let mesh = HexMesh::try_new(cell.points.len(), &hexes).ok()?;
+    let ctx = Context::default();
+    let boundary = |p: &Parameters| -> Vec<Point> { cell.points.iter().map(|&r| position(r, p)).collect() };
+    let bound = |p: &Parameters| {
+        let stars = star_bounds(&mesh, &boundary(p));
+        stars.map_or(-1.0, |stars| stars.iter().map(|s| s.bound).fold(1.0, f64::min))
+    };
+    let mut normal = Normal(0);
+    let mut parent = START;
+    parent[..sides.len()].copy_from_slice(sides);
+    let (mut best, mut width) = (bound(&parent), 0.1);
+    for _ in 0..1000 {
+        let child = normal.child(&parent, sides.len(), width);
+        let value = bound(&child);
+        width = if value > best { 1.5 * width } else { (0.98 * width).max(1e-3) };
+        if value > best {
+            (best, parent) = (value, child);
+        }
+    }
+    let mut how = Options::new(Objective::ScaledJacobian);
+    how.starts = 4;
+    let mut made = embed(&mesh, &boundary(&parent), None, &how, &ctx).ok()?;
+    how.starts = 1;
+    how.programs = 25;
+    let (begin, mut width) = (Instant::now(), 0.05);
+    while begin.elapsed() < time {
+        let child = normal.child(&parent, sides.len(), width);
+        let next = embed(&mesh, &boundary(&child), Some(&made.points), &how, &ctx).ok()?;
+        let better = quality(&next) > quality(&made);
+        width = if better { 1.4 * width } else { (0.93 * width).max(2e-3) };
+        if better {
+            (parent, made) = (child, next);
+        }
+    }
+    how = Options::new(Objective::Balanced);
+    let balanced = embed(&mesh, &made.points, Some(&made.points), &how, &ctx).ok()?;
+    Some((parent, if balanced.report.n_invalid == 0 { balanced } else { made }))
+}
+
+fn main() {
+    let mut arguments = std::env::args().skip(1);
+    let Some(seconds) = arguments.next().and_then(|s| s.parse().ok()) else {
+        return println!("usage: place_cells SECONDS CELL.cell ...");
+    };
+    let sides = std::env::var("SIDES").unwrap_or_default();
+    let sides: Vec<f64> = sides.split(',').filter_map(|x| x.parse().ok()).take(8).collect();
+    for file in arguments {
+        let read = std::fs::read_to_string(&file).map_err(|e| e.to_string()).and_then(|text| Cell::parse(&text));
+        let mut cell = match read {
+            Ok(cell) => cell,
+            Err(e) => {
+                println!("{file}: {e}");
+                continue;
+            }
+        };
+        let Some((parameters, made)) = place(&cell, Duration::from_secs(seconds), &sides) else {
+            println!("{file}: cannot be placed");
+            continue;
+        };
+        let (r, n) = (&made.report, cell.hexes.len());
+        println!(
+            "{file}: {n} hexes, {} invalid, scaled Jacobian {:.5}, condition {:.2}",
+            r.n_invalid, r.scaled_jacobian, r.condition
+        );
+        println!("  parameters {parameters:.6?}");
+        cell.positions = Some(made.points);
+        if let Err(e) = std::fs::write(format!("{file}.placed"), cell.to_text()) {
+            println!("{file}.placed: {e}");
+        }
+    }
+}
