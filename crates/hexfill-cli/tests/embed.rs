@@ -1,17 +1,9 @@
 //! Coordinates through the real binary: inputs that allow none or are hard for floating point, and the same bytes for any threads.
 
-use assert_cmd::Command;
+mod common;
+
+use common::{hexfill, json};
 use std::path::Path;
-
-fn hexfill(dir: &Path, args: &[&str]) -> (i32, String, String) {
-    let out = Command::cargo_bin("hexfill").unwrap().current_dir(dir).args(args).output().unwrap();
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-    (out.status.code().expect("not killed"), text(out.stdout), text(out.stderr))
-}
-
-fn json(text: &str) -> serde_json::Value {
-    serde_json::from_str(text).unwrap_or_else(|e| panic!("{e}: {text}"))
-}
 
 /// Writes the surface of a catalogue entry with its points changed.
 fn surface(dir: &Path, name: &str, file: &str, change: impl Fn(usize, [f64; 3]) -> [f64; 3]) {

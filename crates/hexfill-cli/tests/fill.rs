@@ -1,19 +1,12 @@
 //! The main job through the real binary: known numbers, the boundary contract, interruption, other formats.
 
+mod common;
+
 use assert_cmd::Command;
+use common::{hexfill, json};
 use std::path::Path;
 use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
-
-fn hexfill(dir: &Path, args: &[&str]) -> (i32, String, String) {
-    let out = Command::cargo_bin("hexfill").unwrap().current_dir(dir).args(args).output().unwrap();
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-    (out.status.code().expect("not killed"), text(out.stdout), text(out.stderr))
-}
-
-fn json(text: &str) -> serde_json::Value {
-    serde_json::from_str(text).unwrap_or_else(|e| panic!("{e}: {text}"))
-}
 
 /// Judges connectivity and boundary of `mesh` with the real binary.
 fn judged(dir: &Path, mesh: &str, surface: &str) -> serde_json::Value {

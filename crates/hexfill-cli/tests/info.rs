@@ -1,19 +1,15 @@
 //! `hexfill info` on surfaces: whether a hex mesh exists, why not, and the certificate as a file.
 
-use assert_cmd::Command;
+mod common;
+
+use common::{hexfill, json};
 use std::collections::BTreeMap;
 use std::path::Path;
-
-fn hexfill(dir: &Path, args: &[&str]) -> (i32, String, String) {
-    let out = Command::cargo_bin("hexfill").unwrap().current_dir(dir).args(args).output().unwrap();
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-    (out.status.code().expect("not killed"), text(out.stdout), text(out.stderr))
-}
 
 fn info(dir: &Path, file: &str) -> serde_json::Value {
     let (code, out, err) = hexfill(dir, &["info", file, "--json"]);
     assert_eq!(code, 0, "{err}");
-    serde_json::from_str(&out).unwrap_or_else(|e| panic!("{e}: {out}"))
+    json(&out)
 }
 
 /// A torus of `n` quads round the tube and `m` round the axis as OBJ text; `first` vertices come before it.

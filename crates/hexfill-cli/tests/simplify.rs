@@ -1,18 +1,10 @@
 //! `hexfill simplify` through the real binary: fewer hexes, the boundary bit for bit, wrong input, interruption.
 
-use assert_cmd::Command;
+mod common;
+
+use common::{hexfill, json};
 use std::path::Path;
 use std::time::{Duration, Instant};
-
-fn hexfill(dir: &Path, args: &[&str]) -> (i32, String, String) {
-    let out = Command::cargo_bin("hexfill").unwrap().current_dir(dir).args(args).output().unwrap();
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-    (out.status.code().expect("not killed"), text(out.stdout), text(out.stderr))
-}
-
-fn json(text: &str) -> serde_json::Value {
-    serde_json::from_str(text).unwrap_or_else(|e| panic!("{e}: {text}"))
-}
 
 /// A construction for the pyramid, not embedded.
 fn constructed(dir: &Path, out: &str) -> u64 {

@@ -1,16 +1,11 @@
 //! Wrong input: exit code 2 and one clear message that names the place, the reason and a remedy.
 
-use assert_cmd::Command;
-use std::path::Path;
+mod common;
+
+use common::hexfill;
 
 const CUBE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n";
 const FACES: &str = "f 1 5 8 4\nf 2 3 7 6\nf 1 2 6 5\nf 4 8 7 3\nf 1 4 3 2\nf 5 6 7 8\n";
-
-fn hexfill(dir: &Path, args: &[&str]) -> (i32, String, String) {
-    let out = Command::cargo_bin("hexfill").unwrap().current_dir(dir).args(args).output().unwrap();
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-    (out.status.code().expect("not killed"), text(out.stdout), text(out.stderr))
-}
 
 /// Fills a file with this content; checks for exit code 2, one error line with all the words, and no output file.
 fn refused(name: &str, content: &[u8], words: &[&str]) {

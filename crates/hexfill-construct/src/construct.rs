@@ -109,19 +109,23 @@ pub fn construct(
         Some(library) => library,
         None => CellLibrary::built_in(options.cells),
     };
-    let relieved = match (options.cells, options.route) {
-        (CellChoice::Embeddable, RouteChoice::Auto) => points,
-        _ => None,
+    // Sides that suit the positions; the colours are chosen with them.
+    let relieved = |colours: &Colouring| {
+        let points =
+            points.filter(|_| options.cells == CellChoice::Embeddable && options.route == RouteChoice::Auto)?;
+        let mut sides = light_sides(surface, &[], options.variant / 2, ctx).ok()?;
+        let strain = relieve(surface, points, &colours.white, &mut sides, library)?;
+        Some((strain, sides))
     };
+    let mut planned = relieved(&colours);
     // Tetrahedra from elsewhere were made for the diagonals of one colouring.
-    if let (Some(points), None) = (relieved, &options.tets) {
-        let strain = |colours: &Colouring| {
-            let mut sides = light_sides(surface, &[], options.variant / 2, ctx).ok()?;
-            relieve(surface, points, &colours.white, &mut sides, library)
-        };
+    if options.tets.is_none()
+        && let Some((here, _)) = &planned
+    {
         let other = colouring(surface, !swap);
-        if (strain(&other) < strain(&colours)) != swap {
-            colours = other;
+        let there = relieved(&other);
+        if there.as_ref().is_some_and(|(there, _)| (there < here) != swap) {
+            (colours, planned) = (other, there);
         }
     }
     stage("tetrahedra")?;
@@ -145,10 +149,10 @@ pub fn construct(
     let joins = joins(surface, &complex, &boundary)?;
     stage("matching")?;
     let left_open: Vec<QuadId> = joins.iter().flat_map(|j| j.quads).collect();
-    let mut sides = light_sides(surface, &left_open, options.variant / 2, ctx)?;
-    if let Some(points) = relieved {
-        relieve(surface, points, &colours.white, &mut sides, library);
-    }
+    let sides = match planned {
+        Some((_, sides)) if left_open.is_empty() => sides,
+        _ => light_sides(surface, &left_open, options.variant / 2, ctx)?,
+    };
     stage("buffer layer")?;
     let layer = Layer::new(surface, &colours, &sides, library)?;
     stage("sigma")?;

@@ -5,6 +5,7 @@
 
 use crate::error::ConstructError;
 use crate::tets::{InteriorTets, TET_EDGES, TetComplex, TetRequest};
+use crate::vector::volume;
 use hexfill_mesh::Context;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -105,12 +106,6 @@ pub(crate) fn fitted(
     let mut complex = TetComplex::from_simplices(next as usize, tets);
     complex.points = points.map(|p| p.into_iter().zip(&used).filter(|u| *u.1).map(|(p, _)| p).collect());
     complex
-}
-
-/// Six times the signed volume.
-pub(crate) fn volume([a, b, c, d]: [[f64; 3]; 4]) -> f64 {
-    let [u, v, w] = [b, c, d].map(|p| [p[0] - a[0], p[1] - a[1], p[2] - a[2]]);
-    u[0] * (v[1] * w[2] - v[2] * w[1]) - u[1] * (v[0] * w[2] - v[2] * w[0]) + u[2] * (v[0] * w[1] - v[1] * w[0])
 }
 
 #[cfg(test)]

@@ -31,6 +31,7 @@ mod start;
 mod strain;
 mod tetgen;
 mod tets;
+mod vector;
 
 pub use ball::{BallCore, BallTets};
 pub use cell::{Cell, CellChoice, CellLibrary, PlacedCell};

@@ -8,6 +8,7 @@
 //! intersection form, is invertible over Z (checked modulo 2 and modulo an odd prime).
 
 use crate::darts::{Darts, TreeCotree, tree_cotree};
+use crate::vector::{Point, cross, dot, sub};
 use hexfill_mesh::{Context, StopReason};
 
 /// Basis loops and their linking numbers: `numbers[i][j]` is that of loop `i` with loop `j` pushed outward.
@@ -15,20 +16,6 @@ pub(crate) struct Linking {
     pub trees: TreeCotree,
     pub loops: Vec<Vec<u32>>,
     pub numbers: Vec<Vec<i64>>,
-}
-
-type Point = [f64; 3];
-
-fn sub(a: Point, b: Point) -> Point {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn cross(a: Point, b: Point) -> Point {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-fn dot(a: Point, b: Point) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 fn unit(a: Point) -> Option<Point> {

@@ -4,15 +4,7 @@
 //! Strackee 1983). At even depth it is the outside of a solid, at odd depth a cavity of the solid round it; outsides
 //! must face outward (positive volume), cavities the other way.
 
-type Point = [f64; 3];
-
-fn sub(a: Point, b: Point) -> Point {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn det([a, b, c]: [Point; 3]) -> f64 {
-    a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0])
-}
+use crate::vector::{Point, det, sub};
 
 /// Solid angle of a triangle seen from a point.
 fn angle(at: Point, t: [Point; 3]) -> f64 {

@@ -9,15 +9,13 @@
 
 use crate::ball::centroid;
 use crate::cell::{Cell, CellLibrary};
-use crate::given::volume;
 use crate::layer::Layer;
 use crate::pattern::{Pattern, Role};
 use crate::split::CorePoints;
 use crate::tets::{TET_EDGES, TetComplex, others};
+use crate::vector::{Point, cross, dot, sub, volume};
 use hexfill_mesh::cube::EDGES;
 use hexfill_mesh::{Dart, QuadId, QuadSurface};
-
-type Point = [f64; 3];
 
 /// Share of the shortest edge by which the inner copy is moved inward.
 const OFFSET: f64 = 0.4;
@@ -87,18 +85,6 @@ pub fn template(cell: &Cell) -> Vec<Point> {
         }
     }
     p
-}
-
-fn sub(a: Point, b: Point) -> Point {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn cross(a: Point, b: Point) -> Point {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-fn dot(a: Point, b: Point) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// The inner copy of every vertex: where a fan of hexes under the surface ends.

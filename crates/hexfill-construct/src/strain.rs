@@ -9,9 +9,8 @@
 use crate::cell::CellLibrary;
 use crate::matching::LightSides;
 use crate::pattern::Role;
+use crate::vector::{Point, cross, dot, sub};
 use hexfill_mesh::{Dart, QuadId, QuadSurface};
-
-type Point = [f64; 3];
 
 /// Matched edges of an alternating cycle at most; fewer for large surfaces, so that the work stays linear.
 const CYCLE: usize = 5;
@@ -33,18 +32,6 @@ fn loads(library: &CellLibrary) -> Option<[f64; 4]> {
         cell.hexes.iter().flatten().filter(|&&v| Some(usize::from(v)) == corner).count() as f64
     };
     Some([at(0), at(1), at(2), at(3)])
-}
-
-fn sub(a: Point, b: Point) -> Point {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn cross(a: Point, b: Point) -> Point {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-fn dot(a: Point, b: Point) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// The solid angle inside the surface at every vertex: the area of a spherical polygon (Girard's theorem).

@@ -7,8 +7,9 @@
 //! the orientation of each tet: nothing rests on the signs of small volumes.
 
 use crate::error::ConstructError;
-use crate::given::{fitted, volume};
+use crate::given::fitted;
 use crate::tets::{InteriorTets, OUTWARD, TetComplex, TetRequest, others};
+use crate::vector::volume;
 use hexfill_mesh::{Context, StopReason};
 use std::fmt::Write as _;
 use std::fs::File;

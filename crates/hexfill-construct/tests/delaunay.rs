@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Points, box_at, one_more, plate, together, torus_at, voxels};
+use common::{Points, box_at, one_more, plate, read_obj, together, torus_at, voxels};
 use hexfill_construct::{ConstructError, DelaunayTets, InteriorTets, RouteChoice, TetRequest, core_triangles};
 use hexfill_mesh::{Context, QuadSurface, StopReason};
 use robust::{Coord3D, orient3d};
@@ -73,22 +73,6 @@ fn inset(surface: &QuadSurface, points: &[[f64; 3]], share: f64) -> Points {
     points.iter().zip(normal.iter().zip(&shortest)).map(moved).collect()
 }
 
-fn read(text: &str) -> (QuadSurface, Points) {
-    let (mut points, mut faces) = (Vec::new(), Vec::new());
-    for line in text.lines() {
-        let words: Vec<&str> = line.split_whitespace().collect();
-        match words.first() {
-            Some(&"v") => points.push([1, 2, 3].map(|k| words[k].parse::<f64>().unwrap())),
-            Some(&"f") => {
-                let index = |w: &&str| w.split('/').next().unwrap().parse::<u32>().unwrap() - 1;
-                faces.push(words[1..].iter().map(index).collect::<Vec<u32>>());
-            }
-            _ => {}
-        }
-    }
-    (QuadSurface::try_from_polygons(points.len(), &faces).unwrap(), points)
-}
-
 #[test]
 fn boxes_and_plates() {
     for k in [1, 2, 3, 5] {
@@ -135,7 +119,7 @@ fn bamboo_pen_and_cubespikes() {
         ("bamboo_pen", include_str!("../../../corpus/surfaces/bamboo_pen.obj")),
         ("cubespikes", include_str!("../../../corpus/surfaces/cubespikes.obj")),
     ] {
-        let (surface, points) = read(text);
+        let (surface, points) = read_obj(text);
         filled(name, &surface, &points);
         for share in [0.1, 0.2, 0.4] {
             filled(&format!("{name} inset {share}"), &surface, &inset(&surface, &points, share));

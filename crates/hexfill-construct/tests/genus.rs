@@ -1,6 +1,9 @@
 //! Tori of all parities and plates with holes: judged proper, boundary identical, impossible ones refused with a
 //! certificate that is verified here.
 
+mod common;
+
+use common::{outward, torus_points};
 use hexfill_check::{Judged, Level, judge};
 use hexfill_construct::{ConstructError, Construction, Existence, Options, RouteChoice, construct, existence};
 use hexfill_mesh::generate::{holed_plate, torus};
@@ -20,35 +23,6 @@ fn check(surface: &QuadSurface, made: &Construction) {
     assert_eq!(2 * (vertices - edges + quads - hexes.len() as i64), surface.euler_characteristic());
 }
 
-/// Positions of `torus(n, m, 0)`: `around` steps round the axis, the other index round the tube.
-fn torus_points(n: u32, m: u32, n_is_tube: bool) -> Vec<[f64; 3]> {
-    let turn = std::f64::consts::TAU;
-    let mut points = Vec::new();
-    for j in 0..m {
-        for i in 0..n {
-            let (a, b) = (turn * f64::from(i) / f64::from(n), turn * f64::from(j) / f64::from(m));
-            let (tube, axis) = if n_is_tube { (a, b) } else { (b, a) };
-            let r = 3.0 + tube.cos();
-            points.push([r * axis.cos(), r * axis.sin(), tube.sin()]);
-        }
-    }
-    points
-}
-
-/// The same surface facing outward for these positions.
-fn outward(surface: &QuadSurface, points: &[[f64; 3]]) -> QuadSurface {
-    let mut volume = 0.0;
-    for q in surface.quads() {
-        let p = q.map(|v| points[v.index()]);
-        for [a, b, c] in [[p[0], p[1], p[2]], [p[0], p[2], p[3]]] {
-            volume += a[0] * (b[1] * c[2] - b[2] * c[1])
-                + a[1] * (b[2] * c[0] - b[0] * c[2])
-                + a[2] * (b[0] * c[1] - b[1] * c[0]);
-        }
-    }
-    if volume > 0.0 { surface.clone() } else { surface.inverted() }
-}
-
 fn is_odd_cycle(surface: &QuadSurface, cycle: &[Edge]) {
     let all: BTreeSet<Edge> = surface.darts().map(|d| Edge::new(surface.origin(d), surface.target(d))).collect();
     assert_eq!(cycle.len() % 2, 1);
@@ -65,7 +39,7 @@ fn is_odd_cycle(surface: &QuadSurface, cycle: &[Edge]) {
 fn tori_of_all_parities() {
     for (n, m) in [(3, 4), (4, 3), (4, 4), (5, 4), (4, 5), (6, 3), (6, 6), (8, 7), (7, 8)] {
         for n_is_tube in [true, false] {
-            let points = torus_points(n, m, n_is_tube);
+            let points = torus_points(n, m, n_is_tube, 1.0, [0.0; 3]);
             let surface = outward(&torus(n, m, 0).unwrap(), &points);
             let tube = if n_is_tube { n } else { m };
             let made = construct(&surface, Some(&points), &Options::default(), &Context::default());

@@ -53,7 +53,7 @@ fn solids_apart_and_nested() {
         box_at(3, 8.0, O, false),
         torus_at(4, 5, true, 1.0, O, true),
         torus_at(4, 6, true, 1.0, [20.0, 0.0, 0.0], true),
-        box_at(2, 1.0, [0.0, 0.0, 9.0], false),
+        box_at(2, 0.5, [0.0, 0.0, 9.0], false),
     ];
     let (surface, points) = together(&parts);
     assert!(matches!(existence(&surface, Some(&points)), Existence::Exists { .. }));

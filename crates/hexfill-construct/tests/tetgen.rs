@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{box_at, bulged, check, one_more, plate, together, torus_at};
+use common::{box_at, bulged, check, one_more, plate, read_obj, together, torus_at};
 use hexfill_construct::{ConstructError, Construction, Options, TetgenTets, construct};
 use hexfill_mesh::{Context, QuadSurface, StopReason};
 use std::os::unix::fs::PermissionsExt;
@@ -88,19 +88,7 @@ fn bamboo_pen() {
     if !is_installed() {
         return;
     }
-    let (mut points, mut faces) = (Vec::new(), Vec::new());
-    for line in include_str!("../../../corpus/surfaces/bamboo_pen.obj").lines() {
-        let words: Vec<&str> = line.split_whitespace().collect();
-        match words.first() {
-            Some(&"v") => points.push([1, 2, 3].map(|k| words[k].parse::<f64>().unwrap())),
-            Some(&"f") => {
-                let index = |w: &&str| w.split('/').next().unwrap().parse::<u32>().unwrap() - 1;
-                faces.push(words[1..].iter().map(index).collect::<Vec<u32>>());
-            }
-            _ => {}
-        }
-    }
-    let surface = QuadSurface::try_from_polygons(points.len(), &faces).unwrap();
+    let (surface, points) = read_obj(include_str!("../../../corpus/surfaces/bamboo_pen.obj"));
     filled(&surface, &points);
 }
 

@@ -8,8 +8,9 @@
 //! there and no face has a free side. Ties need no care, the faces are those that the tetrahedra chose.
 //! Rounded points of one triangle may be the corners of a flat tet; [`Conforming::inside`] leaves such tets outside.
 
-use super::mesh::{Delaunay, NONE, Point, cross, dot, orient, sub};
+use super::mesh::{Delaunay, NONE, orient};
 use crate::tets::OUTWARD;
+use crate::vector::{Point, bounding_box, cross, dot, sub};
 use hexfill_mesh::{Context, StopReason};
 
 /// What a vertex belongs to.
@@ -437,14 +438,7 @@ impl<'a> Conforming<'a> {
 
 /// The vertices along a space-filling curve: neighbours in it are near each other, so walks are short.
 fn morton_order(points: &[Point]) -> Vec<u32> {
-    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-    for p in points {
-        for c in 0..3 {
-            low[c] = low[c].min(p[c]);
-            high[c] = high[c].max(p[c]);
-        }
-    }
-    let size = (0..3).map(|c| high[c] - low[c]).fold(f64::MIN_POSITIVE, f64::max);
+    let (low, _, size) = bounding_box(points);
     let key = |p: &Point| {
         let grid: [u64; 3] = std::array::from_fn(|c| ((p[c] - low[c]) / size * 1023.0) as u64);
         (0..10).rev().fold(0u64, |key, bit| (0..3).fold(key, |key, c| key << 1 | (grid[c] >> bit & 1)))

@@ -4,9 +4,10 @@
 //! takes them as they come), and such tets bar every move of their corners. Removing an edge (Freitag and Ollivier-Gooch 1997)
 //! tries all triangulations of the ring of vertices round it, by dynamic programming (Klincsek 1980). No flip touches the boundary.
 
-use super::mesh::{NONE, Point, cross, dot, sub};
+use super::mesh::NONE;
 use super::solid::{FLOOR, Solid};
 use crate::tets::{OUTWARD, TET_EDGES};
+use crate::vector::{Point, cross, dot, sub};
 use hexfill_mesh::{Context, StopReason};
 
 /// Tets of less quality are worked on.

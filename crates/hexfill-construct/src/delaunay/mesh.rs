@@ -7,9 +7,8 @@
 //! Invariant: `around[t][i]` is the tet across the face of `t` opposite its vertex `i`, [`NONE`] at the huge tet.
 
 use crate::tets::OUTWARD;
+use crate::vector::{Point, bounding_box};
 use robust::{Coord3D, insphere, orient3d};
-
-pub(crate) type Point = [f64; 3];
 
 /// No tet, no vertex.
 pub(crate) const NONE: u32 = u32::MAX;
@@ -21,18 +20,6 @@ fn coord(p: Point) -> Coord3D<f64> {
 /// A number with the exact sign of det(b - a, c - a, d - a).
 pub(crate) fn orient([a, b, c, d]: [Point; 4]) -> f64 {
     orient3d(coord(b), coord(c), coord(d), coord(a))
-}
-
-pub(crate) fn sub(a: Point, b: Point) -> Point {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-pub(crate) fn dot(a: Point, b: Point) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-pub(crate) fn cross(a: Point, b: Point) -> Point {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 /// A Delaunay tetrahedralisation. See the module page.
@@ -54,14 +41,7 @@ pub(crate) struct Delaunay {
 impl Delaunay {
     /// The huge tet alone: its corners get the first ids that are not those of `points`, which are not inserted yet.
     pub fn new(points: &[Point]) -> Self {
-        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        for p in points {
-            for c in 0..3 {
-                low[c] = low[c].min(p[c]);
-                high[c] = high[c].max(p[c]);
-            }
-        }
-        let size = (0..3).map(|c| high[c] - low[c]).fold(f64::MIN_POSITIVE, f64::max);
+        let (low, high, size) = bounding_box(points);
         let far = 4096.0 * size;
         let centre: Point = std::array::from_fn(|c| low[c] + (high[c] - low[c]) / 2.0);
         let corner = |s: [f64; 3]| std::array::from_fn(|c| centre[c] + far * s[c]);

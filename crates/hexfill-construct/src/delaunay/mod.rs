@@ -16,9 +16,9 @@ mod solid;
 
 use crate::error::ConstructError;
 use crate::tets::{InteriorTets, TetComplex, TetRequest};
+use crate::vector::{cross, dot, sub};
 use conform::{Conforming, Failure};
 use hexfill_mesh::Context;
-use mesh::{cross, dot, sub};
 use solid::Solid;
 
 /// Tetrahedra of the interior by conforming Delaunay refinement. See the module page.

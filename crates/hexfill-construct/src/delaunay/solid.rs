@@ -9,8 +9,9 @@
 //! because it lies on the inner side of their planes.
 
 use super::conform::Inside;
-use super::mesh::{NONE, Point, cross, dot, orient, sub};
+use super::mesh::{NONE, orient};
 use crate::tets::TET_EDGES;
+use crate::vector::{Point, cross, dot, sub};
 use hexfill_mesh::{Context, StopReason};
 
 /// Least quality that a removal may leave, unless it was worse before.

@@ -90,12 +90,16 @@ pub fn volume(surface: &QuadSurface, points: &[[f64; 3]]) -> f64 {
     volume
 }
 
+/// The same surface facing outward for these positions.
+pub fn outward(surface: &QuadSurface, points: &[[f64; 3]]) -> QuadSurface {
+    if volume(surface, points) > 0.0 { surface.clone() } else { surface.inverted() }
+}
+
 /// A torus facing outward, or inward.
 pub fn torus_at(n: u32, m: u32, i_is_tube: bool, r: f64, at: [f64; 3], outward: bool) -> (QuadSurface, Points) {
     let points = torus_points(n, m, i_is_tube, r, at);
-    let surface = torus(n, m, 0).unwrap();
-    let right = (volume(&surface, &points) > 0.0) == outward;
-    (if right { surface } else { surface.inverted() }, points)
+    let surface = self::outward(&torus(n, m, 0).unwrap(), &points);
+    (if outward { surface } else { surface.inverted() }, points)
 }
 
 /// A sphere of quads (a refined cube of half side `r`) facing outward, or inward.
@@ -149,4 +153,21 @@ pub fn bulged((surface, points): (QuadSurface, Points)) -> (QuadSurface, Points)
         p.map(|x| x * (1.0 - 0.1 * square))
     });
     (surface, points.collect())
+}
+
+/// The vertices and faces of an OBJ file.
+pub fn read_obj(text: &str) -> (QuadSurface, Points) {
+    let (mut points, mut faces) = (Vec::new(), Vec::new());
+    for line in text.lines() {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        match words.first() {
+            Some(&"v") => points.push([1, 2, 3].map(|k| words[k].parse::<f64>().unwrap())),
+            Some(&"f") => {
+                let index = |w: &&str| w.split('/').next().unwrap().parse::<u32>().unwrap() - 1;
+                faces.push(words[1..].iter().map(index).collect::<Vec<u32>>());
+            }
+            _ => {}
+        }
+    }
+    (QuadSurface::try_from_polygons(points.len(), &faces).unwrap(), points)
 }
