@@ -281,6 +281,15 @@ impl CellLibrary {
         self.placed.get(usize::from(self.lookup[code(p)]))
     }
 
+    /// What a cell costs where the choice is free: its hexes, and much more if it has no positions although others have.
+    pub(crate) fn cost(&self, p: &Pattern) -> usize {
+        const NOT_PLACED: usize = 1 << 12;
+        let Some(cell) = self.find(p) else { return 1 << 20 };
+        let some_placed = self.cells.iter().any(|c| c.positions.is_some());
+        let is_placed = self.cells[cell.cell].positions.is_some();
+        cell.hexes.len() + if some_placed && !is_placed { NOT_PLACED } else { 0 }
+    }
+
     /// Number of hexes of the cell for a pattern.
     pub fn n_hexes(&self, p: &Pattern) -> Option<usize> {
         self.find(p).map(|c| c.hexes.len())
@@ -416,7 +425,7 @@ mod tests {
             for k in 0..4 {
                 for role in cell.pattern.side_points(k) {
                     let i = cell.points.iter().position(|&r| r == role).unwrap();
-                    assert_eq!(positions[i], crate::start::template_position(role), "{name}: {role}");
+                    assert_eq!(positions[i], crate::start::template_position(&cell.pattern, role), "{name}: {role}");
                 }
             }
         }

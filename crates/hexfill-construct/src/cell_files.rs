@@ -25,6 +25,12 @@ const CELL_FILES: &[(&str, &str)] = &[
 
 // The same patterns by cells that embed in the cube: more hexes, positions in their files.
 const EMBEDDED_CELL_FILES: &[(&str, &str)] = &[
+    ("bw-ddlh.cell", include_str!("../data/cells/embedded/bw-ddlh.cell")),
+    ("bw-dohl.cell", include_str!("../data/cells/embedded/bw-dohl.cell")),
+    ("bw-dolh.cell", include_str!("../data/cells/embedded/bw-dolh.cell")),
+    ("bw-ldhh.cell", include_str!("../data/cells/embedded/bw-ldhh.cell")),
+    ("bw-lohh.cell", include_str!("../data/cells/embedded/bw-lohh.cell")),
+    ("bw-oolh.cell", include_str!("../data/cells/embedded/bw-oolh.cell")),
     ("ww-lhhh.cell", include_str!("../data/cells/embedded/ww-lhhh.cell")),
     ("ww-lllh.cell", include_str!("../data/cells/embedded/ww-lllh.cell")),
 ];

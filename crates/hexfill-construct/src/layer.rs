@@ -124,11 +124,11 @@ impl<'a> Layer<'a> {
     }
 
     /// The star of a heavy black-black side may be joined to either end: take the end that makes the two cells
-    /// small. Two sweeps; the order is that of the darts, so the result is always the same.
+    /// small, or gives them cells that have positions. Two sweeps; the order is that of the darts, so the result is always the same.
     fn choose_stars(&mut self, library: &CellLibrary) {
         let surface = self.surface;
         let cost = |layer: &Self, d: Dart| -> usize {
-            [d, surface.twin(d)].iter().map(|d| library.n_hexes(&layer.pattern(d.quad())).unwrap_or(1 << 20)).sum()
+            [d, surface.twin(d)].iter().map(|d| library.cost(&layer.pattern(d.quad()))).sum()
         };
         for d in surface.darts() {
             // A consistent start: the star at the end with the smaller id.

@@ -10,7 +10,7 @@
 use crate::ball::centroid;
 use crate::cell::{Cell, CellLibrary};
 use crate::layer::Layer;
-use crate::pattern::{Pattern, Role};
+use crate::pattern::{Pattern, Role, Side};
 use crate::split::CorePoints;
 use crate::tets::{TET_EDGES, TetComplex, others};
 use crate::vector::{Point, cross, dot, sub, volume};
@@ -23,8 +23,8 @@ const OFFSET: f64 = 0.4;
 /// Position of corner `k` of the template in the plane.
 const CORNERS: [[f64; 2]; 4] = [[-1.0, -1.0], [-1.0, 1.0], [1.0, 1.0], [1.0, -1.0]];
 
-/// Where the template has a boundary point.
-pub fn template_position(role: Role) -> Point {
+/// Where the template has a boundary point of a pattern's cell.
+pub fn template_position(pattern: &Pattern, role: Role) -> Point {
     let at = |k: u8, z: f64| {
         let [x, y] = CORNERS[usize::from(k)];
         [x, y, z]
@@ -45,13 +45,15 @@ pub fn template_position(role: Role) -> Point {
         Role::Inner(k) => at(k, 1.0),
         Role::Middle(k) => at(k, 0.3241692943093266),
         Role::Edge(k) => on_side(k, 0.3818478484319652, 1.0),
-        // A little above the corners: the light black-black side has a quad between them and the corners.
-        Role::EdgeDiagonal(k) => on_side(k, -0.35, 1.3),
-        Role::EdgeOdd(k) => on_side(k, 0.35, 1.3),
+        // A little above the corners: the light black-black side has a quad between them and the corners. Mirror images, because
+        // what is the odd corner here may be the diagonal corner of the neighbour.
+        Role::EdgeDiagonal(k) => on_side(k, -0.35, 1.38),
+        Role::EdgeOdd(k) => on_side(k, 0.35, 1.38),
         Role::X(k) => on_side(k, 0.04649937557664252, -0.04567703642278415),
         Role::Y(k) => on_side(k, 0.25102760006182834, 0.7354842617333364),
         Role::Z(k) => on_side(k, -0.06305424588624131, 0.543869623529535),
-        Role::Star(k) => on_side(k, 0.0, 0.5),
+        Role::Star(k) if pattern.sides[usize::from(k)] == Side::StarOdd => on_side(k, -0.05, 0.55),
+        Role::Star(k) => on_side(k, 0.05, 0.55),
         Role::Diagonal => [0.0, 0.0, 1.0],
         Role::Face(t) => in_triangle(t, 0.4),
         Role::FaceLone(t) => in_triangle(t, 0.5),
@@ -66,7 +68,7 @@ pub fn template(cell: &Cell) -> Vec<Point> {
     if let Some(positions) = &cell.positions {
         return positions.clone();
     }
-    let mut p: Vec<Point> = cell.points.iter().map(|&r| template_position(r)).collect();
+    let mut p: Vec<Point> = cell.points.iter().map(|&r| template_position(&cell.pattern, r)).collect();
     let mut neighbours = vec![Vec::new(); p.len()];
     for hex in &cell.hexes {
         for [i, j] in EDGES {

@@ -52,3 +52,11 @@ fn a_torus_is_valid_once_embedded() {
     // Tetrahedra of the core by `DelaunayTets`; a torus is not star-shaped.
     assert!(placed(&round_torus(16, 8), Some(Objective::UntangleOnly)).is_certified());
 }
+
+#[test]
+fn coarse_tori_that_are_odd_round_the_axis_are_valid_once_embedded() {
+    // No two-colouring: the cells beside the edges that Sigma crosses (`bw-ldhh`, `bw-oolh`) have positions of their own.
+    for (n, m) in [(9, 6), (11, 6), (15, 8)] {
+        assert!(placed(&round_torus(n, m), Some(Objective::UntangleOnly)).is_certified(), "{n} x {m}");
+    }
+}

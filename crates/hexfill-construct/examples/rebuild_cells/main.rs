@@ -6,7 +6,8 @@
 //! the smallest sets of blocked pairs are kept, none a subset of another (`WIDTH` of them), and per number of quads the
 //! `BEAM` holes with the fewest. `FREE=1` blocks nothing at first: a filling that is not wall-safe is pillowed when it is loaded.
 //! `FLAT=1` blocks the pairs of the inner facet as well: no hex then has two quads on one flat facet, so the cell may embed
-//! (see the example `place_cells` of `hexfill`).
+//! (see the example `place_cells` of `hexfill`). `ALL=n` writes every filling met that has at most `n` hexes more than the
+//! smallest one, as `pattern-0.cell` and so on, for `place_cells` to choose from.
 //! The environment variables `ATLAS` (a file of `hexfill atlas build`; else one is grown, `LEVELS` and `GROWTH_WIDTH`),
 //! `WIDTH`, `DEPTH`, `BEAM` and `CAP` (quads of a hole) set the effort.
 
@@ -82,18 +83,47 @@ fn first_hole(pattern: &Pattern, roles: &[Role], walls: bool) -> Option<Hole> {
     Some(Hole { cavity, ids, n_vertices: roles.len() as u32, hexes: Vec::new() })
 }
 
-/// A mesh of fewer than `limit` hexes that fills the hole from the atlas.
-fn close(hole: &Hole, atlas: &Atlas, limit: usize) -> Option<(u32, Vec<[u32; 8]>)> {
+/// Number of vertices, and hexes.
+type Filling = (u32, Vec<[u32; 8]>);
+
+/// The fillings of the hole from the atlas that make at most `limit` hexes in all, the smallest only unless `all`.
+fn close(hole: &Hole, atlas: &Atlas, limit: usize, all: bool) -> Vec<Filling> {
+    let Some(most) = limit.checked_sub(hole.hexes.len()) else { return Vec::new() };
     if hole.cavity.n_quads() > ATLAS_CAP {
-        return None;
+        return Vec::new();
     }
-    let most = limit.checked_sub(hole.hexes.len() + 1)?;
-    let inside = mirror(&hole.cavity)?;
-    let (ball, map, mirrored) = atlas.best_fit(&inside, most as u32)?;
-    let ids: Vec<u32> = map.iter().map(|&v| hole.ids[usize::from(v)]).collect();
-    let (mut hexes, fresh) = ball.hexes_in(&ids, mirrored, hole.n_vertices);
-    hexes.extend(&hole.hexes);
-    Some((hole.n_vertices + fresh, hexes))
+    let Some(inside) = mirror(&hole.cavity) else { return Vec::new() };
+    let mut found = Vec::new();
+    for ball in atlas.balls_for(&inside).take_while(|ball| ball.n_hexes() <= most) {
+        for (map, mirrored) in ball.placements(&inside) {
+            let ids: Vec<u32> = map.iter().map(|&v| hole.ids[usize::from(v)]).collect();
+            let (mut hexes, fresh) = ball.hexes_in(&ids, mirrored, hole.n_vertices);
+            hexes.extend(&hole.hexes);
+            found.push((hole.n_vertices + fresh, hexes));
+            if !all {
+                return found;
+            }
+        }
+    }
+    found
+}
+
+/// Equal for fillings that differ in the numbers of their inner vertices only (and for few others): the hexes by their
+/// boundary vertices and by how many hexes their inner vertices have.
+fn signature(hexes: &[[u32; 8]], n_boundary: u32) -> Vec<Vec<(u32, u32)>> {
+    let mut degree = BTreeMap::<u32, u32>::new();
+    hexes.iter().flatten().for_each(|&v| *degree.entry(v).or_default() += 1);
+    let name = |v: u32| if v < n_boundary { (v, 0) } else { (n_boundary, degree[&v]) };
+    let mut all: Vec<Vec<(u32, u32)>> = hexes
+        .iter()
+        .map(|h| {
+            let mut hex = h.map(name).to_vec();
+            hex.sort_unstable();
+            hex
+        })
+        .collect();
+    all.sort_unstable();
+    all
 }
 
 /// The holes one hex further that no earlier one dominates.
@@ -149,30 +179,44 @@ fn ones(bits: &Bits) -> u32 {
     bits.iter().map(|w| w.count_ones()).sum()
 }
 
-/// The smallest filling met.
-fn search(pattern: &Pattern, atlas: &Atlas, walls: bool) -> Option<Cell> {
+/// The smallest filling met; with `ALL=n` every one met with at most `n` hexes more, fewest first.
+fn search(pattern: &Pattern, atlas: &Atlas, walls: bool) -> Vec<Cell> {
     let roles = roles_of(pattern);
-    let mut holes = vec![first_hole(pattern, &roles, walls)?];
-    let mut best: Option<(u32, Vec<[u32; 8]>)> = None;
+    let Some(hole) = first_hole(pattern, &roles, walls) else { return Vec::new() };
+    let mut holes = vec![hole];
+    let mut met: BTreeMap<(usize, Vec<Vec<(u32, u32)>>), Filling> = BTreeMap::new();
     let mut fronts = Fronts::new();
     let sizes = [setting("CAP", ATLAS_CAP), setting("WIDTH", 3), setting("BEAM", 1000)];
+    let all = std::env::var_os("ALL").is_some();
+    let more = setting("ALL", 0);
     for depth in 0..=setting("DEPTH", 10) {
         for hole in &holes {
-            let limit = best.as_ref().map_or(usize::MAX, |b| b.1.len());
-            best = close(hole, atlas, limit).or(best);
+            let fewest = met.keys().next().map(|(n, _)| *n);
+            let limit = fewest.map_or(usize::MAX, |n| if all { n + more } else { n - 1 });
+            for filling in close(hole, atlas, limit, all) {
+                let n = filling.1.len();
+                met.entry((n, signature(&filling.1, roles.len() as u32))).or_insert(filling);
+            }
+            if let Some(fewest) = met.keys().next().map(|(n, _)| *n) {
+                met = met.into_iter().filter(|((n, _), _)| *n <= fewest + more).collect();
+            }
         }
         if std::env::var_os("VERBOSE").is_some() {
-            println!("  {pattern} {depth}: {} holes, best {:?}", holes.len(), best.as_ref().map(|b| b.1.len()));
+            let best = met.keys().next().map(|(n, _)| *n);
+            println!("  {pattern} {depth}: {} holes, {} fillings, best {best:?}", holes.len(), met.len());
         }
         holes = deeper(&holes, &mut fronts, sizes);
     }
-    let (n_vertices, hexes) = best?;
-    HexMesh::try_new(n_vertices as usize, &hexes).ok()?;
-    let n_boundary = roles.len();
-    let mut points = roles;
-    points.extend((0..n_vertices as usize - n_boundary).map(|i| Role::Interior(i as u16)));
-    let hexes = hexes.iter().map(|h| h.map(|v| v as u16)).collect();
-    Some(Cell { pattern: *pattern, points, n_boundary, hexes, positions: None })
+    let cell = |(n_vertices, hexes): Filling| {
+        HexMesh::try_new(n_vertices as usize, &hexes).ok()?;
+        let n_boundary = roles.len();
+        let mut points = roles.clone();
+        points.extend((0..n_vertices as usize - n_boundary).map(|i| Role::Interior(i as u16)));
+        let hexes = hexes.iter().map(|h| h.map(|v| v as u16)).collect();
+        Some(Cell { pattern: *pattern, points, n_boundary, hexes, positions: None })
+    };
+    let cells = met.into_values().filter_map(cell);
+    if all { cells.collect() } else { cells.take(1).collect() }
 }
 
 fn boundary(quads: Vec<[Role; 4]>) -> BTreeSet<[Role; 4]> {
@@ -211,17 +255,20 @@ fn main() {
     };
     for pattern in patterns {
         let known = CellLibrary::built_in(CellChoice::Fewest).n_hexes(&pattern).unwrap_or(0);
-        let Some(cell) = search(&pattern, &atlas, std::env::var_os("FREE").is_none()) else {
+        let cells = search(&pattern, &atlas, std::env::var_os("FREE").is_none());
+        if cells.is_empty() {
             println!("{pattern}: nothing found (built in: {known})");
-            continue;
-        };
-        let right = boundary(cell.hex_boundary()) == boundary(pattern.boundary());
-        let safe = cell.unsafe_pairs().is_empty();
-        let n = cell.hexes.len() + if safe { 0 } else { pattern.boundary().len() };
-        println!("{pattern}: {n} hexes (built in: {known}), wall-safe by itself: {safe}, boundary right: {right}");
-        let path = std::path::Path::new(&folder).join(format!("{pattern}.cell"));
-        if right && let Err(e) = std::fs::write(&path, cell.to_text()) {
-            println!("{}: {e}", path.display());
+        }
+        for (i, cell) in cells.iter().enumerate() {
+            let right = boundary(cell.hex_boundary()) == boundary(pattern.boundary());
+            let safe = cell.unsafe_pairs().is_empty();
+            let n = cell.hexes.len() + if safe { 0 } else { pattern.boundary().len() };
+            println!("{pattern}: {n} hexes (built in: {known}), wall-safe by itself: {safe}, boundary right: {right}");
+            let name = if cells.len() == 1 { format!("{pattern}.cell") } else { format!("{pattern}-{i}.cell") };
+            let path = std::path::Path::new(&folder).join(name);
+            if right && let Err(e) = std::fs::write(&path, cell.to_text()) {
+                println!("{}: {e}", path.display());
+            }
         }
     }
 }
