@@ -86,6 +86,9 @@ fn first_hole(pattern: &Pattern, roles: &[Role], walls: bool) -> Option<Hole> {
 /// Number of vertices, and hexes.
 type Filling = (u32, Vec<[u32; 8]>);
 
+/// See [`signature`].
+type Signature = Vec<Vec<(u32, u32)>>;
+
 /// The fillings of the hole from the atlas that make at most `limit` hexes in all, the smallest only unless `all`.
 fn close(hole: &Hole, atlas: &Atlas, limit: usize, all: bool) -> Vec<Filling> {
     let Some(most) = limit.checked_sub(hole.hexes.len()) else { return Vec::new() };
@@ -110,7 +113,7 @@ fn close(hole: &Hole, atlas: &Atlas, limit: usize, all: bool) -> Vec<Filling> {
 
 /// Equal for fillings that differ in the numbers of their inner vertices only (and for few others): the hexes by their
 /// boundary vertices and by how many hexes their inner vertices have.
-fn signature(hexes: &[[u32; 8]], n_boundary: u32) -> Vec<Vec<(u32, u32)>> {
+fn signature(hexes: &[[u32; 8]], n_boundary: u32) -> Signature {
     let mut degree = BTreeMap::<u32, u32>::new();
     hexes.iter().flatten().for_each(|&v| *degree.entry(v).or_default() += 1);
     let name = |v: u32| if v < n_boundary { (v, 0) } else { (n_boundary, degree[&v]) };
@@ -184,7 +187,7 @@ fn search(pattern: &Pattern, atlas: &Atlas, walls: bool) -> Vec<Cell> {
     let roles = roles_of(pattern);
     let Some(hole) = first_hole(pattern, &roles, walls) else { return Vec::new() };
     let mut holes = vec![hole];
-    let mut met: BTreeMap<(usize, Vec<Vec<(u32, u32)>>), Filling> = BTreeMap::new();
+    let mut met: BTreeMap<(usize, Signature), Filling> = BTreeMap::new();
     let mut fronts = Fronts::new();
     let sizes = [setting("CAP", ATLAS_CAP), setting("WIDTH", 3), setting("BEAM", 1000)];
     let all = std::env::var_os("ALL").is_some();
