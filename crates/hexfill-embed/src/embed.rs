@@ -54,13 +54,13 @@ pub fn embed(
         frame.problem.symmetry = symmetry::find(mesh, &frame.problem, &frame.points);
     }
     if options.threads == 0 {
-        return Ok(frame.run(mesh, start, options, context));
+        return Ok(frame.run_also_from_symmetric(mesh, start, options, context));
     }
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(options.threads)
         .build()
         .map_err(|_| EmbedError::Threads { given: options.threads })?;
-    Ok(pool.install(|| frame.run(mesh, start, options, context)))
+    Ok(pool.install(|| frame.run_also_from_symmetric(mesh, start, options, context)))
 }
 
 /// The graph-Laplacian (Tutte) start: every interior vertex at the mean of its neighbours, boundary vertices as given.
@@ -103,6 +103,46 @@ struct Normal {
 }
 
 impl Normal {
+    /// [`run`](Self::run), for a small mesh also from its best symmetric positions, if it has any: a flat optimum, which linear
+    /// programs approach slowly in all variables, is near in a quarter of them.
+    fn run_also_from_symmetric(
+        &mut self,
+        mesh: &HexMesh,
+        start: Option<&[Vector]>,
+        options: &Options,
+        context: &Context<'_>,
+    ) -> Embedding {
+        let made = self.run(mesh, start, options, context);
+        let report = &made.report;
+        let may_help = start.is_none()
+            && !options.symmetric
+            && options.objective == Objective::ScaledJacobian
+            && mesh.n_hexes() <= SMALL
+            && report.upper_bound > 1e-9
+            && report.scaled_jacobian < report.upper_bound - 1e-8
+            && context.stop().is_none();
+        if may_help {
+            self.problem.symmetry = symmetry::find(mesh, &self.problem, &self.points);
+        }
+        if !may_help || self.problem.symmetry.is_none() {
+            return made;
+        }
+        let one = Options { starts: 1, ..*options };
+        let symmetric = self.run(mesh, None, &one, context);
+        self.problem.symmetry = None;
+        if !symmetric.report.valid_in_floating_point {
+            return made;
+        }
+        let mut better = self.run(mesh, Some(&symmetric.points), &one, context);
+        if made.report.valid_in_floating_point && made.report.scaled_jacobian >= better.report.scaled_jacobian {
+            return made;
+        }
+        better.report.best_start = made.report.starts;
+        better.report.starts = made.report.starts + 1;
+        better.report.valid_starts = made.report.valid_starts + 1;
+        better
+    }
+
     fn new(mesh: &HexMesh, boundary_points: &[Vector], start: Option<&[Vector]>) -> Result<Self, EmbedError> {
         const LEAST_EXTENT: f64 = 1e-305;
         if mesh.n_hexes() == 0 {

@@ -109,7 +109,8 @@ pub struct EmbedReport {
     pub starts: u32,
     /// Starts that came out valid.
     pub valid_starts: u32,
-    /// The start the result came from (0 is the given or the unit-weight one).
+    /// The start the result came from (0 is the given or the unit-weight one; the last one of a small mesh with symmetries
+    /// starts from symmetric positions).
     pub best_start: u32,
     /// The worst scaled Jacobian: no smaller value was seen in any cell; not positive if a cell is not valid.
     pub scaled_jacobian: f64,

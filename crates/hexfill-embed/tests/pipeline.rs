@@ -57,10 +57,19 @@ fn the_spindle_with_40_hexes_has_coordinates() {
     }
 }
 
-/// Classes with 40, 42 and 44 hexes that are as good as the one with 36: their bound is 1/sqrt(10), too.
+/// Classes with 40, 42 and 44 hexes that are as good as the one with 36: their bound is 1/sqrt(10), too. Four hexes
+/// on the base and the spindle's 40 above them make two more with 44, according to which way the spindle is
+/// turned: that of Verhetsel, Pellerin and Remacle (2018), and one that is better than any with fewer hexes.
 #[test]
-fn larger_pyramids_reach_the_same_optimum() {
-    for (name, hexes, least) in [("pyramid_40", 40, 0.3162), ("pyramid_42", 42, 0.3162), ("pyramid_44", 44, 0.31)] {
+fn larger_pyramids_reach_the_same_optimum_and_one_more() {
+    let optimum = 0.1f64.sqrt();
+    for (name, hexes, least, bound) in [
+        ("pyramid_40", 40, 0.3162, optimum),
+        ("pyramid_42", 42, 0.3162, optimum),
+        ("pyramid_44", 44, 0.31, optimum),
+        ("pyramid_44_2018", 44, 0.22961, f64::NAN),
+        ("pyramid_44_best", 44, 0.3971, f64::NAN),
+    ] {
         let sample = Sample::read(name);
         let mesh = sample.mesh();
         assert_eq!(mesh.n_hexes(), hexes);
@@ -69,7 +78,9 @@ fn larger_pyramids_reach_the_same_optimum() {
         let done = embed(&mesh, &sample.boundary_points, None, &options, &Context::default()).unwrap();
         let (valid, [lower, _]) = certified(&mesh, &done.points);
         assert!(valid && lower >= least, "{name} {lower}");
-        assert!((done.report.upper_bound - 0.1f64.sqrt()).abs() < 1e-12, "{name} {}", done.report.upper_bound);
+        let reached = done.report.upper_bound;
+        assert!(bound.is_nan() || (reached - bound).abs() < 1e-12, "{name} {reached}");
+        assert!(reached >= lower, "{name} {reached}");
         assert_boundary_kept(&mesh, &sample.boundary_points, &done.points);
     }
 }

@@ -64,6 +64,8 @@ pub struct FillOptions {
     /// How many cavities inward flips may look at before the next strategy has its turn (no clock: the same result
     /// every time).
     pub inward_cavities: u64,
+    /// How many of them are kept on each level. More find more of the meshes that [`count`](Self::count) asks for.
+    pub beam: usize,
     /// Where the construction gets the tetrahedra of an interior that is not a ball.
     pub interior: InteriorFrom,
     /// Which cells the construction uses where it has a choice: the ones with the fewest hexes do not embed.
@@ -85,6 +87,7 @@ impl Default for FillOptions {
             growth_log: None,
             growth: GrowOptions::default(),
             inward_cavities: 1_000_000,
+            beam: InwardOptions::default().beam,
             interior: InteriorFrom::BuiltIn,
             cells: CellChoice::Embeddable,
             simplify: None,
@@ -255,7 +258,7 @@ fn search(
         count: if options.count == 1 { 1 } else { 8 * options.count },
         improve: options.improve,
         max_cavities: if options.improve { u64::MAX } else { options.inward_cavities },
-        ..InwardOptions::default()
+        beam: options.beam,
     };
     let outcome = fill_from_atlas(surface, atlas, &inward, ctx).expect("the caller checked: a small sphere");
     result.tried.push(format!("atlas of {} states, inward flips over {} cavities", atlas.n_states(), outcome.cavities));

@@ -1,6 +1,7 @@
 //! Coordinates for a filling, and what the judge says of them cell by cell. Never more is said than was shown.
 
 use crate::fill::Filled;
+use crate::placement::placements;
 use crate::problem::Problem;
 use hexfill_check::{CellQuality, Judged, cell_quality};
 use hexfill_embed::{EmbedError, EmbedReport, canonical_polyhedron, embed, tutte_start};
@@ -19,6 +20,9 @@ pub struct Placed {
     pub embedding: Option<EmbedReport>,
     /// Why there are no useful positions of the interior: the boundary's own do not span a solid.
     pub refused: Option<String>,
+    /// In how many ways the mesh lies on the surface, up to congruence. More than one if the surface has symmetries that its
+    /// positions lack; 1 if that was not asked.
+    pub ways: usize,
 }
 
 /// Numbers about the geometry of a mesh, for people and for JSON.
@@ -36,6 +40,8 @@ pub struct GeometryReport {
     pub embedding: Option<EmbedReport>,
     /// Why the boundary's positions cannot be used.
     pub refused: Option<String>,
+    /// In how many ways the mesh lies on the surface, up to congruence; the best of them was kept.
+    pub ways: usize,
 }
 
 /// The positions of a problem's vertices: its own, or those of the canonical polyhedron of a sphere without any.
@@ -47,10 +53,81 @@ pub fn boundary_points(problem: &Problem) -> Option<Vec<[f64; 3]>> {
     }
 }
 
+/// Most ways to lie on the surface that are embedded, a mesh.
+const MOST_WAYS: usize = 6;
+
 /// Places a filling: with `options` it is embedded, without it gets start positions only (the construction's, or Tutte's).
 /// Boundary positions that cannot be used (all in one spot, say) cost the geometry, never the mesh: interior vertices then
 /// lie on a boundary vertex, and `refused` says why.
+///
+/// A mesh without start positions is turned on the surface (its connectivity changes to an isomorphic one) if it embeds
+/// better another way.
 pub fn place(
+    filled: &mut Filled,
+    problem: &Problem,
+    boundary: &[[f64; 3]],
+    options: Option<&hexfill_embed::Options>,
+    ctx: &Context<'_>,
+) -> Placed {
+    match options {
+        Some(options) if filled.start.is_none() => {
+            let (turned, placed) = place_best(std::slice::from_ref(filled), problem, boundary, options, ctx)
+                .expect("one mesh is given, so one is best");
+            *filled = turned;
+            placed
+        }
+        _ => place_as_it_is(filled, boundary, options, ctx),
+    }
+}
+
+/// Embeds fillings of one surface, each in all the ways it lies on it, and returns the best: most hexes certified, then the
+/// largest worst scaled Jacobian. Those with larger star bounds come first, and none is tried whose bound is no
+/// better than what was reached. `None` if there are no fillings.
+pub fn place_best(
+    meshes: &[Filled],
+    problem: &Problem,
+    boundary: &[[f64; 3]],
+    options: &hexfill_embed::Options,
+    ctx: &Context<'_>,
+) -> Option<(Filled, Placed)> {
+    let mut all: Vec<(f64, usize, Filled)> = Vec::new();
+    for filled in meshes {
+        if filled.start.is_some() {
+            all.push((f64::INFINITY, 1, filled.clone()));
+            continue;
+        }
+        let ways = placements(&filled.mesh, &problem.surface, boundary);
+        let n = ways.len();
+        all.extend(ways.into_iter().take(MOST_WAYS).map(|way| {
+            let turned = Filled { mesh: way.mesh, route: filled.route, start: None };
+            (way.upper_bound, n, turned)
+        }));
+    }
+    // Stable: first come, first served among equals.
+    all.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let n_tried = all.len() as u64;
+    let mut best: Option<(Filled, Placed)> = None;
+    for (number, (upper_bound, ways, turned)) in all.into_iter().enumerate() {
+        // Upper bounds hold up to rounding.
+        if let Some((_, b)) = &best
+            && (b.is_certified() && b.worst() + 1e-9 >= upper_bound || ctx.stop().is_some())
+        {
+            break;
+        }
+        ctx.report("placements", number as u64, Some(n_tried), || match &best {
+            Some((_, b)) => format!("best scaled Jacobian {:.4}", b.worst()),
+            None => String::new(),
+        });
+        let placed = Placed { ways, ..place_as_it_is(&turned, boundary, Some(options), ctx) };
+        if best.as_ref().is_none_or(|(_, b)| placed.rank() > b.rank()) {
+            best = Some((turned, placed));
+        }
+    }
+    best
+}
+
+/// [`place`] without turning.
+fn place_as_it_is(
     filled: &Filled,
     boundary: &[[f64; 3]],
     options: Option<&hexfill_embed::Options>,
@@ -108,7 +185,7 @@ fn place_from(
     }
     // The surface's points come back bit for bit, those that no quad uses included.
     points[..boundary.len()].copy_from_slice(boundary);
-    Placed { points, cells, embedding, refused }
+    Placed { points, cells, embedding, refused, ways: 1 }
 }
 
 /// The judge's numbers on every hex. Every vertex id of a `HexMesh` has a position here, so every hex has a quality.
@@ -124,6 +201,16 @@ impl Placed {
         self.cells.iter().all(|c| c.valid)
     }
 
+    /// The least certified scaled Jacobian; -1 if a hex is not certified.
+    pub fn worst(&self) -> f64 {
+        self.cells.iter().map(|c| c.certified_lower).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Placements with fewer hexes that are not certified rank higher, then those with a larger worst scaled Jacobian.
+    fn rank(&self) -> (std::cmp::Reverse<usize>, f64) {
+        (std::cmp::Reverse(self.cells.iter().filter(|c| !c.valid).count()), self.worst())
+    }
+
     /// The numbers.
     pub fn report(&self) -> GeometryReport {
         let least = |value: fn(&CellQuality) -> f64| self.cells.iter().map(value).fold(f64::INFINITY, f64::min);
@@ -131,9 +218,10 @@ impl Placed {
             certified: self.cells.iter().filter(|c| c.valid).count(),
             hexes: self.cells.len(),
             corner_scaled_jacobian: least(|c| c.corner_scaled_jacobian),
-            certified_scaled_jacobian: least(|c| c.certified_lower),
+            certified_scaled_jacobian: self.worst(),
             embedding: self.embedding.clone(),
             refused: self.refused.clone(),
+            ways: self.ways,
         }
     }
 

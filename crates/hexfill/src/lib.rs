@@ -16,6 +16,7 @@ pub mod catalog;
 mod components;
 mod fill;
 mod geometry;
+mod placement;
 mod problem;
 mod simplify;
 
@@ -23,7 +24,7 @@ pub use fill::{
     FillError, FillOptions, FillReport, FillResult, Filled, InteriorFrom, Route, Strategy, check_fillable, fill,
     mesh_data,
 };
-pub use geometry::{GeometryReport, Placed, boundary_points, place};
+pub use geometry::{GeometryReport, Placed, boundary_points, place, place_best};
 pub use hexfill_mesh::{Context, Progress, StopReason};
 pub use hexfill_search::{SimplifyOptions, SimplifyReport};
 pub use problem::{Problem, ProblemError, is_named};

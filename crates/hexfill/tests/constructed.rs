@@ -7,11 +7,11 @@ use hexfill_mesh::generate::torus;
 fn placed(problem: &Problem, objective: Option<Objective>) -> Placed {
     let options = FillOptions { strategy: Strategy::Construct, ..FillOptions::default() };
     let ctx = Context::default();
-    let result = hexfill::fill(problem, &options, &ctx).unwrap();
+    let mut result = hexfill::fill(problem, &options, &ctx).unwrap();
     assert_eq!(result.meshes[0].route, Route::Construction);
     let boundary = hexfill::boundary_points(problem).unwrap();
     let how = objective.map(hexfill::embed::Options::new);
-    let placed = hexfill::place(&result.meshes[0], &boundary, how.as_ref(), &ctx);
+    let placed = hexfill::place(&mut result.meshes[0], problem, &boundary, how.as_ref(), &ctx);
     assert_eq!(placed.points[..boundary.len()], boundary[..]);
     placed
 }

@@ -84,7 +84,7 @@ pub fn run(args: &EmbedArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Re
     let judged = Judged::connectivity(mesh.n_vertices(), &data.hexes).with_points(&made.points);
     let cells = cell_quality(&judged).into_iter().flatten().collect();
     let stop = made.report.stop;
-    let placed = Placed { points: made.points, cells, embedding: Some(made.report), refused: None };
+    let placed = Placed { points: made.points, cells, embedding: Some(made.report), refused: None, ways: 1 };
     let valid = placed.is_certified();
     let report = placed.report();
     console.say(report.to_string());

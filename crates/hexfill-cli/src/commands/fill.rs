@@ -45,6 +45,10 @@ pub struct FillArgs {
     /// Look for this many meshes that are not isomorphic.
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=10_000))]
     count: u64,
+    /// Look for this many meshes that are not isomorphic, embed them, and write the one with the largest worst scaled Jacobian.
+    /// See also --max-hexes and --beam.
+    #[arg(long, value_name = "N", conflicts_with_all = ["count", "no_embed"], value_parser = clap::value_parser!(u64).range(2..=10_000))]
+    best_of: Option<u64>,
     /// Look on for smaller meshes until --time-limit.
     #[arg(long, requires = "time_limit")]
     improve: bool,
@@ -61,6 +65,9 @@ pub struct FillArgs {
     /// How many cavities inward flips may look at before the next strategy has its turn.
     #[arg(long, default_value_t = 1_000_000, value_name = "N")]
     inward_cavities: u64,
+    /// How many of these cavities are kept on each level: more find more of the meshes --count asks for.
+    #[arg(long, default_value_t = 1000, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    beam: u64,
     /// A tetrahedral mesh of the inside, for surfaces that are not spheres (boundary: the quads cut along diagonals).
     #[arg(long, value_name = "FILE", conflicts_with = "tetgen")]
     tets: Option<String>,
@@ -77,7 +84,7 @@ pub struct FillArgs {
     /// Do not embed: interior vertices get start positions, and geometry is not judged.
     #[arg(long)]
     no_embed: bool,
-    /// How long the embedding of one mesh may take [default: as long as its bounded work takes].
+    /// How long the embedding of one mesh, or of all with --best-of, may take [default: as long as its bounded work takes].
     #[arg(long, value_name = "TIME", value_parser = files::parse_duration)]
     embed_limit: Option<Duration>,
     /// Write nothing unless det J > 0 is certified in every hex.
@@ -157,11 +164,12 @@ pub fn run(args: &FillArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Res
             StrategyArg::Construct => Strategy::Construct,
         },
         max_hexes: args.max_hexes.unwrap_or(u32::MAX),
-        count: args.count as usize,
+        count: args.best_of.unwrap_or(args.count) as usize,
         improve: args.improve,
         atlas: args.atlas.as_deref().map(Atlas::read_path).transpose()?.map(Arc::new),
         growth_log: args.growth_log.clone().or_else(|| own_log.clone()),
         inward_cavities: args.inward_cavities,
+        beam: usize::try_from(args.beam).unwrap_or(usize::MAX),
         interior: interior(args)?,
         cells: match args.cells {
             Some(CellsArg::Fewest) => CellChoice::Fewest,
@@ -172,7 +180,7 @@ pub fn run(args: &FillArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Res
         simplify: simplification(args, ctx),
         growth: GrowOptions { cap: args.cap, width: args.width.max(1) },
     };
-    let result = hexfill::fill(&problem, &options, ctx)?;
+    let mut result = hexfill::fill(&problem, &options, ctx)?;
     if result.meshes.is_empty() {
         if console.json {
             console.print_json(&Output {
@@ -209,9 +217,22 @@ pub fn run(args: &FillArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Res
         notes: problem.notes.clone(),
     };
     let mut all_valid = true;
-    for (i, filled) in result.meshes.iter().enumerate() {
+    let mut best = None;
+    if args.best_of.is_some()
+        && let Some(boundary) = &boundary
+    {
+        let options = hexfill::embed::Options::default();
+        let found = std::mem::take(&mut result.meshes);
+        best = hexfill::place_best(&found, &problem, boundary, &options, &limited(args, ctx));
+        result.tried.push(format!("the best of {} meshes", found.len()));
+        result.meshes.extend(best.as_ref().map(|(filled, _)| filled.clone()));
+    }
+    for (i, filled) in result.meshes.iter_mut().enumerate() {
         let report = FillReport::new(&problem, filled, &result.tried);
-        let placed = boundary.as_deref().map(|b| position(args, filled, b, ctx));
+        let placed = match best.take() {
+            Some((_, placed)) => Some(placed),
+            None => boundary.as_deref().map(|b| position(args, &problem, filled, b, ctx)),
+        };
         let valid = args.no_embed || placed.as_ref().is_none_or(Placed::is_certified);
         all_valid &= valid;
         let mut mesh = MeshOutput { report, geometry: placed.as_ref().map(Placed::report), files: Vec::new() };
@@ -260,10 +281,20 @@ fn interior(args: &FillArgs) -> anyhow::Result<InteriorFrom> {
 }
 
 /// Embeds a mesh, or gives it start positions.
-fn position(args: &FillArgs, filled: &Filled, boundary: &[[f64; 3]], ctx: &Context<'_>) -> Placed {
+fn position(
+    args: &FillArgs,
+    problem: &Problem,
+    filled: &mut Filled,
+    boundary: &[[f64; 3]],
+    ctx: &Context<'_>,
+) -> Placed {
     let options = hexfill::embed::Options::default();
-    let limited = args.embed_limit.map_or(*ctx, |limit| ctx.with_time_limit(limit));
-    hexfill::place(filled, boundary, (!args.no_embed).then_some(&options), &limited)
+    hexfill::place(filled, problem, boundary, (!args.no_embed).then_some(&options), &limited(args, ctx))
+}
+
+/// The context with the time that embedding may take.
+fn limited<'a>(args: &FillArgs, ctx: &Context<'a>) -> Context<'a> {
+    args.embed_limit.map_or(*ctx, |limit| ctx.with_time_limit(limit))
 }
 
 /// Writes the mesh, its page and its picture; returns the names of the files.
@@ -333,7 +364,14 @@ fn say(output: &Output, args: &FillArgs, console: &Console) {
         ));
         console.say("connectivity: judged proper, boundary = surface (L1-L3)");
         match &mesh.geometry {
-            Some(geometry) => console.say(format!("geometry: {geometry}")),
+            Some(geometry) => {
+                console.say(format!("geometry: {geometry}"));
+                if geometry.ways > 1 {
+                    let ways = geometry.ways;
+                    console
+                        .say(format!("lies on the surface in {ways} ways that are not congruent; the best was kept"));
+                }
+            }
             None => console.say("geometry: none, the surface has no coordinates"),
         }
         if !mesh.files.is_empty() {
@@ -343,6 +381,9 @@ fn say(output: &Output, args: &FillArgs, console: &Console) {
         } else {
             console.say("nothing written: give -o OUT");
         }
+    }
+    if let (Some(_), Some(which)) = (args.best_of, output.meshes.first().and_then(|m| m.report.tried.last())) {
+        console.say(format!("kept {which}"));
     }
     if output.meshes.len() < args.count as usize {
         console.say(format!("{} of {} meshes asked for were found", output.meshes.len(), args.count));
