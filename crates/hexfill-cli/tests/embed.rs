@@ -52,7 +52,7 @@ fn boundaries_that_leave_no_room_are_named_and_the_mesh_is_written() {
         ("coincident.obj", "star bound"),
         ("crossed.obj", "certified in"),
     ] {
-        let (code, _, err) = hexfill(dir.path(), &["fill", file, "-o", "m.vtu"]);
+        let (code, _, err) = hexfill(dir.path(), &["fill", file, "-o", "m.vtu", "--embed-limit", "2s"]);
         assert_eq!(code, 1, "{file}: {err}");
         assert!(err.contains(words), "{file}: {err}");
         // The connectivity is good, and the file says which cells are not.
@@ -61,7 +61,8 @@ fn boundaries_that_leave_no_room_are_named_and_the_mesh_is_written() {
         assert!(levels.as_array().unwrap()[..3].iter().all(|l| l["outcome"] == "passed"), "{file}: {levels}");
         assert!(std::fs::read_to_string(dir.path().join("m.vtu")).unwrap().contains("certified_positive"), "{file}");
         std::fs::remove_file(dir.path().join("m.vtu")).unwrap();
-        let (code, _, err) = hexfill(dir.path(), &["fill", file, "-o", "m.vtu", "--require-valid"]);
+        let (code, _, err) =
+            hexfill(dir.path(), &["fill", file, "-o", "m.vtu", "--require-valid", "--embed-limit", "2s"]);
         assert_eq!(code, 1, "{file}: {err}");
         assert!(!dir.path().join("m.vtu").exists(), "{file}");
     }

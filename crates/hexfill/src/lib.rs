@@ -16,6 +16,7 @@ pub mod catalog;
 mod components;
 mod fill;
 mod geometry;
+mod placed_fill;
 mod placement;
 mod problem;
 mod simplify;
@@ -27,6 +28,7 @@ pub use fill::{
 pub use geometry::{GeometryReport, Placed, boundary_points, place, place_best};
 pub use hexfill_mesh::{Context, Progress, StopReason};
 pub use hexfill_search::{SimplifyOptions, SimplifyReport};
+pub use placed_fill::{PlaceOptions, PlacedFill, fill_placed};
 pub use problem::{Problem, ProblemError, is_named};
 pub use simplify::{SimplifiedData, SimplifyError, simplify};
 pub use {

@@ -9,7 +9,8 @@ use hexfill::construct::{CellChoice, GivenTets, TetgenTets};
 use hexfill::io::Format;
 use hexfill::search::{Atlas, GrowOptions};
 use hexfill::{
-    Context, FillOptions, FillReport, Filled, GeometryReport, InteriorFrom, Placed, Problem, StopReason, Strategy,
+    Context, FillOptions, FillReport, Filled, GeometryReport, InteriorFrom, PlaceOptions, Placed, Problem, StopReason,
+    Strategy,
 };
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -128,6 +129,8 @@ struct Output {
     stopped: &'static str,
     seconds: f64,
     notes: Vec<String>,
+    /// Why this mesh and no other, if there was a choice.
+    choice: Option<String>,
 }
 
 /// Fills, judges, writes, reports.
@@ -180,7 +183,11 @@ pub fn run(args: &FillArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Res
         simplify: simplification(args, ctx),
         growth: GrowOptions { cap: args.cap, width: args.width.max(1) },
     };
-    let mut result = hexfill::fill(&problem, &options, ctx)?;
+    let mut how = PlaceOptions::default();
+    how.embed = (!args.no_embed).then(hexfill::embed::Options::default);
+    how.best = args.best_of.is_some();
+    how.limit = args.embed_limit;
+    let result = hexfill::fill_placed(&problem, &options, &how, ctx)?;
     if result.meshes.is_empty() {
         if console.json {
             console.print_json(&Output {
@@ -188,6 +195,7 @@ pub fn run(args: &FillArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Res
                 stopped: crate::commands::atlas::stop_word(result.stop),
                 seconds: start.elapsed().as_secs_f64(),
                 notes: result.tried.clone(),
+                choice: None,
             })?;
         }
         for tried in &result.tried {
@@ -206,8 +214,7 @@ pub fn run(args: &FillArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Res
     if let Some(log) = own_log.filter(|log| log.exists()) {
         std::fs::remove_file(log)?;
     }
-    let boundary = hexfill::boundary_points(&problem);
-    if problem.points.is_none() && boundary.is_some() {
+    if problem.points.is_none() && result.meshes[0].1.is_some() {
         console.note("the surface has no coordinates; those of its canonical polyhedron are used");
     }
     let mut output = Output {
@@ -215,24 +222,11 @@ pub fn run(args: &FillArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Res
         stopped: crate::commands::atlas::stop_word(result.stop),
         seconds: 0.0,
         notes: problem.notes.clone(),
+        choice: result.choice.clone(),
     };
     let mut all_valid = true;
-    let mut best = None;
-    if args.best_of.is_some()
-        && let Some(boundary) = &boundary
-    {
-        let options = hexfill::embed::Options::default();
-        let found = std::mem::take(&mut result.meshes);
-        best = hexfill::place_best(&found, &problem, boundary, &options, &limited(args, ctx));
-        result.tried.push(format!("the best of {} meshes", found.len()));
-        result.meshes.extend(best.as_ref().map(|(filled, _)| filled.clone()));
-    }
-    for (i, filled) in result.meshes.iter_mut().enumerate() {
+    for (i, (filled, placed)) in result.meshes.iter().enumerate() {
         let report = FillReport::new(&problem, filled, &result.tried);
-        let placed = match best.take() {
-            Some((_, placed)) => Some(placed),
-            None => boundary.as_deref().map(|b| position(args, &problem, filled, b, ctx)),
-        };
         let valid = args.no_embed || placed.as_ref().is_none_or(Placed::is_certified);
         all_valid &= valid;
         let mut mesh = MeshOutput { report, geometry: placed.as_ref().map(Placed::report), files: Vec::new() };
@@ -278,23 +272,6 @@ fn interior(args: &FillArgs) -> anyhow::Result<InteriorFrom> {
         Some(program) => InteriorFrom::Tetgen(TetgenTets { program: program.clone() }),
         None => InteriorFrom::BuiltIn,
     })
-}
-
-/// Embeds a mesh, or gives it start positions.
-fn position(
-    args: &FillArgs,
-    problem: &Problem,
-    filled: &mut Filled,
-    boundary: &[[f64; 3]],
-    ctx: &Context<'_>,
-) -> Placed {
-    let options = hexfill::embed::Options::default();
-    hexfill::place(filled, problem, boundary, (!args.no_embed).then_some(&options), &limited(args, ctx))
-}
-
-/// The context with the time that embedding may take.
-fn limited<'a>(args: &FillArgs, ctx: &Context<'a>) -> Context<'a> {
-    args.embed_limit.map_or(*ctx, |limit| ctx.with_time_limit(limit))
 }
 
 /// Writes the mesh, its page and its picture; returns the names of the files.
@@ -382,8 +359,8 @@ fn say(output: &Output, args: &FillArgs, console: &Console) {
             console.say("nothing written: give -o OUT");
         }
     }
-    if let (Some(_), Some(which)) = (args.best_of, output.meshes.first().and_then(|m| m.report.tried.last())) {
-        console.say(format!("kept {which}"));
+    if let Some(choice) = &output.choice {
+        console.say(format!("choice: {choice}"));
     }
     if output.meshes.len() < args.count as usize {
         console.say(format!("{} of {} meshes asked for were found", output.meshes.len(), args.count));

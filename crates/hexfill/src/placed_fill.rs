@@ -1,0 +1,237 @@
+//! Filling and placing in one: what a user wants is a mesh with valid coordinates.
+//!
+//! The smallest filling of a small surface often has none. Then more fillings are looked for, and at last the surface is
+//! constructed, whose cells were chosen for their coordinates. Nothing is lost: where nothing is certified, the smallest
+//! filling stays.
+
+use crate::fill::{FillError, FillOptions, FillResult, Filled, Route, Strategy, fill};
+use crate::geometry::{Placed, boundary_points, place, place_best};
+use crate::problem::Problem;
+use hexfill_mesh::{Context, QuadId, QuadSurface, StopReason, VertexId};
+use std::time::Duration;
+
+/// How to place fillings.
+#[derive(Clone, Copy, Debug, Default)]
+#[non_exhaustive]
+pub struct PlaceOptions {
+    /// How to embed; `None`: start positions only.
+    pub embed: Option<hexfill_embed::Options>,
+    /// Keep the best of all fillings that were found, not each of them.
+    pub best: bool,
+    /// How long one embedding may take; with [`best`](Self::best) all of them together.
+    pub limit: Option<Duration>,
+}
+
+/// Fillings with their coordinates.
+#[derive(Clone, Debug)]
+pub struct PlacedFill {
+    /// The meshes, fewest hexes first, with positions if the surface has any.
+    pub meshes: Vec<(Filled, Option<Placed>)>,
+    /// Why the work ended.
+    pub stop: StopReason,
+    /// What was tried, in words.
+    pub tried: Vec<String>,
+    /// Why this mesh and no other, if there was a choice.
+    pub choice: Option<String>,
+}
+
+/// Fillings that are looked for where the first has no valid coordinates.
+const MORE_FILLINGS: usize = 50;
+
+/// Starts for each of them: the first ones find most of what many find.
+const STARTS: u32 = 2;
+
+/// [`fill`], then [`place`]. Where a single mesh is asked for, by any strategy ([`Strategy::Auto`]), and the first does not embed, others are
+/// tried.
+///
+/// # Errors
+/// As [`fill`].
+pub fn fill_placed(
+    problem: &Problem,
+    options: &FillOptions,
+    how: &PlaceOptions,
+    ctx: &Context<'_>,
+) -> Result<PlacedFill, FillError> {
+    let FillResult { meshes, stop, mut tried } = fill(problem, options, ctx)?;
+    let Some(boundary) = boundary_points(problem).filter(|_| !meshes.is_empty()) else {
+        return Ok(PlacedFill { meshes: meshes.into_iter().map(|m| (m, None)).collect(), stop, tried, choice: None });
+    };
+    let limited = || how.limit.map_or(*ctx, |limit| ctx.with_time_limit(limit));
+    let mut choice = None;
+    let mut placed: Vec<(Filled, Placed)> = match &how.embed {
+        Some(embed) if how.best => {
+            choice = Some(format!("the best of {} meshes", meshes.len()));
+            place_best(&meshes, problem, &boundary, embed, &limited()).into_iter().collect()
+        }
+        embed => meshes
+            .into_iter()
+            .map(|mut filled| {
+                let placed = place(&mut filled, problem, &boundary, embed.as_ref(), &limited());
+                (filled, placed)
+            })
+            .collect(),
+    };
+    if let (Some(embed), [(first, first_placed)], Strategy::Auto) = (&how.embed, &mut placed[..], options.strategy)
+        && (options.count == 1 || how.best)
+        && !options.improve
+        && first.route != Route::Construction
+        && !first_placed.is_certified()
+        && first_placed.refused.is_none()
+    {
+        let next = Next { problem, options, embed, boundary: &boundary, has_best: how.best };
+        if let Some(why) = no_room(&problem.surface, &boundary) {
+            choice = Some(format!("no other mesh was tried, since none can be valid: {why}"));
+        } else if let Some((filled, placed)) = next.valid(&limited, ctx, &mut tried)? {
+            choice = Some(format!("a smaller mesh of {} hexes was found, but did not embed", first.mesh.n_hexes()));
+            (*first, *first_placed) = (filled, placed);
+        }
+    }
+    let meshes = placed.into_iter().map(|(filled, placed)| (filled, Some(placed))).collect();
+    Ok(PlacedFill { meshes, stop, tried, choice })
+}
+
+/// What to try after the first filling.
+struct Next<'a> {
+    problem: &'a Problem,
+    options: &'a FillOptions,
+    embed: &'a hexfill_embed::Options,
+    boundary: &'a [[f64; 3]],
+    has_best: bool,
+}
+
+impl Next<'_> {
+    /// A certified mesh from further fillings, or from the construction.
+    fn valid<'c>(
+        &self,
+        limited: &dyn Fn() -> Context<'c>,
+        ctx: &Context<'_>,
+        tried: &mut Vec<String>,
+    ) -> Result<Option<(Filled, Placed)>, FillError> {
+        if !self.has_best && ctx.stop().is_none() {
+            let more = FillOptions { count: MORE_FILLINGS, ..self.options.clone() };
+            let found = fill(self.problem, &more, ctx)?;
+            tried.push(format!("{} fillings", found.meshes.len()));
+            let mut embed = *self.embed;
+            if embed.starts == 0 {
+                embed.starts = STARTS;
+            }
+            let best = place_best(&found.meshes, self.problem, self.boundary, &embed, &limited());
+            if let Some((filled, placed)) = best.filter(|(_, placed)| placed.is_certified()) {
+                return Ok(Some((filled, placed)));
+            }
+        }
+        if ctx.stop().is_some() {
+            return Ok(None);
+        }
+        let constructed = FillOptions { strategy: Strategy::Construct, count: 1, ..self.options.clone() };
+        let made = fill(self.problem, &constructed, ctx)?;
+        tried.extend(made.tried);
+        let Some(mut filled) = made.meshes.into_iter().next() else { return Ok(None) };
+        let placed = place(&mut filled, self.problem, self.boundary, Some(self.embed), &limited());
+        Ok(Some((filled, placed)).filter(|(_, placed)| placed.is_certified()))
+    }
+}
+
+/// Why no mesh of the surface has det J > 0, whatever its connectivity; `None` if no such reason is seen.
+fn no_room(surface: &QuadSurface, points: &[[f64; 3]]) -> Option<String> {
+    // Seen from one vertex, in halves so that nothing overflows, and about as large as one.
+    let origin = points[surface.quads().first()?[0].index()];
+    let seen = |v: VertexId| [0, 1, 2].map(|k: usize| 0.5 * points[v.index()][k] - 0.5 * origin[k]);
+    let largest =
+        surface.quads().iter().flatten().flat_map(|&v| seen(v)).fold(f64::MIN_POSITIVE, |m, x| m.max(x.abs()));
+    let at = |v: VertexId| seen(v).map(|x| x / largest);
+    let corner = |quad: &[VertexId; 4], k: usize| {
+        let at = |i: usize| at(quad[(k + i) % 4]);
+        cross(sub(at(1), at(0)), sub(at(3), at(0)))
+    };
+    let mut volume = 0.0;
+    for (q, quad) in surface.quads().iter().enumerate() {
+        let normals: [[f64; 3]; 4] = std::array::from_fn(|k| corner(quad, k));
+        let size = normals.iter().map(|n| dot(*n, *n)).fold(0.0, f64::max);
+        let flat = normals.iter().all(|&n| {
+            let off = cross(n, normals[0]);
+            dot(off, off) <= 1e-24 * size * size
+        });
+        // A straight corner makes det J zero there; in a plane, a corner the other way makes it zero on a line.
+        let sum: [f64; 3] = std::array::from_fn(|c| normals.iter().map(|n| n[c]).sum());
+        let bad = |n: &[f64; 3]| dot(*n, *n) <= 1e-24 * size || flat && dot(*n, sum) <= 0.0;
+        if let Some(k) = normals.iter().position(bad) {
+            return Some(format!(
+                "quad {} is straight or not convex at vertex {}, so that no hex on it has det J > 0 everywhere; move its vertices",
+                QuadId::new(q),
+                quad[k]
+            ));
+        }
+        let [a, b, c, d] = quad.map(at);
+        volume += dot(a, cross(b, c)) + dot(a, cross(c, d)) + dot(b, cross(c, d)) + dot(a, cross(b, d));
+    }
+    (volume <= 1e-12).then(|| "it encloses no volume, or faces inward".to_owned())
+}
+
+fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn placing() -> PlaceOptions {
+        PlaceOptions { embed: Some(hexfill_embed::Options::default()), ..PlaceOptions::default() }
+    }
+
+    #[test]
+    fn a_smallest_filling_without_coordinates_is_left_for_one_with() {
+        let problem = Problem::load(":buffer-cube-20", None).unwrap();
+        let ctx = Context::default();
+        let smallest = fill(&problem, &FillOptions::default(), &ctx).unwrap();
+        let made = fill_placed(&problem, &FillOptions::default(), &placing(), &ctx).unwrap();
+        let (filled, placed) = &made.meshes[0];
+        assert!(placed.as_ref().unwrap().is_certified(), "{:?}", made.tried);
+        assert!(filled.mesh.n_hexes() > smallest.meshes[0].mesh.n_hexes());
+        assert!(filled.route != Route::Construction);
+    }
+
+    #[test]
+    fn what_leaves_no_room_is_told_from_what_is_far_away() {
+        let problem = Problem::load(":schneiders-pyramid", None).unwrap();
+        let points = problem.points.clone().unwrap();
+        let moved = |f: &dyn Fn([f64; 3]) -> [f64; 3]| -> Option<String> {
+            no_room(&problem.surface, &points.iter().map(|p| f(*p)).collect::<Vec<_>>())
+        };
+        assert_eq!(moved(&|p| p.map(|x| 1e6 + 1e-3 * x)), None);
+        assert_eq!(moved(&|p| p.map(|x| 1e300 * x)), None);
+        assert_eq!(moved(&|p| p.map(|x| 1e-300 * x)), None);
+        assert!(moved(&|p| [p[0], p[1], 0.0]).is_some());
+        assert!(moved(&|p| [p[0], p[1], -p[2]]).is_some_and(|why| why.contains("faces inward")));
+        assert!(moved(&|_| [1.0; 3]).is_some());
+        let mut bent = points.clone();
+        let base = problem.surface.quads()[0];
+        // A corner of a planar quad beyond the line of its neighbours.
+        let [a, b, c] = [0, 1, 2].map(|k: usize| base[k].index());
+        bent[b] = [0, 1, 2].map(|k: usize| 0.6 * (points[a][k] + points[c][k]) - 0.2 * points[b][k]);
+        assert!(no_room(&problem.surface, &bent).is_some_and(|why| why.contains("not convex")));
+    }
+
+    #[test]
+    fn a_straight_corner_rules_out_every_mesh() {
+        let mut problem = Problem::load(":cube", None).unwrap();
+        let points = problem.points.as_mut().unwrap();
+        // One corner of the cube onto the line between two of its neighbours.
+        let quad = problem.surface.quads()[0];
+        let [a, b, c] = [0, 1, 2].map(|k: usize| quad[k].index());
+        points[b] = [0, 1, 2].map(|k: usize| 0.5 * (points[a][k] + points[c][k]));
+        let made = fill_placed(&problem, &FillOptions::default(), &placing(), &Context::default()).unwrap();
+        assert_eq!(made.meshes[0].0.mesh.n_hexes(), 1);
+        assert!(!made.meshes[0].1.as_ref().unwrap().is_certified());
+        assert!(made.choice.as_ref().is_some_and(|c| c.contains("straight or not convex")), "{:?}", made.choice);
+    }
+}
