@@ -14,7 +14,7 @@ use serde::Serialize;
 pub struct Placed {
     /// Position per vertex; the surface's own come first, bit for bit.
     pub points: Vec<[f64; 3]>,
-    /// Per hex: its quality and whether det J > 0 was certified on all of it.
+    /// Per hex: its quality and whether det J > 0 was certified on all of it. Empty if nothing was judged.
     pub cells: Vec<CellQuality>,
     /// What the embedding reports; absent if only start positions were asked for, or none could be made.
     pub embedding: Option<EmbedReport>,
@@ -30,12 +30,12 @@ pub struct Placed {
 pub struct GeometryReport {
     /// Hexes with det J > 0 certified everywhere.
     pub certified: usize,
-    /// All hexes.
+    /// Hexes judged: all of them, or none where only start positions were asked for.
     pub hexes: usize,
     /// Least scaled Jacobian at the corners of any hex.
-    pub corner_scaled_jacobian: f64,
+    pub corner_scaled_jacobian: Option<f64>,
     /// Certified lower bound of the least scaled Jacobian over whole hexes; -1 if a hex is not certified.
-    pub certified_scaled_jacobian: f64,
+    pub certified_scaled_jacobian: Option<f64>,
     /// What the embedding reports.
     pub embedding: Option<EmbedReport>,
     /// Why the boundary's positions cannot be used.
@@ -51,6 +51,12 @@ pub fn boundary_points(problem: &Problem) -> Option<Vec<[f64; 3]>> {
         None if problem.surface.is_sphere() => canonical_polyhedron(&problem.surface).ok(),
         None => None,
     }
+}
+
+/// Start positions alone: the construction's, or Tutte's. Nothing is judged.
+pub fn start_positions(filled: &Filled, boundary: &[[f64; 3]], ctx: &Context<'_>) -> Placed {
+    let (points, _, refused) = positions_or_none(filled, boundary, None, ctx);
+    Placed { points, cells: Vec::new(), embedding: None, refused, ways: 1 }
 }
 
 /// Most ways to lie on the surface that are embedded, a mesh.
@@ -133,15 +139,30 @@ fn place_as_it_is(
     options: Option<&hexfill_embed::Options>,
     ctx: &Context<'_>,
 ) -> Placed {
-    let made = positions(filled, boundary, options, ctx);
-    let refused = made.as_ref().err().map(ToString::to_string);
-    let (points, embedding) = made.unwrap_or_else(|_| {
-        let anywhere = boundary.first().copied().unwrap_or_default();
-        let mut points = boundary.to_vec();
-        points.resize(filled.mesh.n_vertices(), anywhere);
-        (points, None)
-    });
+    let (points, embedding, refused) = positions_or_none(filled, boundary, options, ctx);
     place_from(filled, boundary, points, embedding, refused)
+}
+
+/// [`positions`]; where there are none, interior vertices at a boundary vertex and the reason.
+fn positions_or_none(
+    filled: &Filled,
+    boundary: &[[f64; 3]],
+    options: Option<&hexfill_embed::Options>,
+    ctx: &Context<'_>,
+) -> (Vec<[f64; 3]>, Option<EmbedReport>, Option<String>) {
+    match positions(filled, boundary, options, ctx) {
+        Ok((mut points, embedding)) => {
+            // The surface's points come back bit for bit, those that no quad uses included.
+            points[..boundary.len()].copy_from_slice(boundary);
+            (points, embedding, None)
+        }
+        Err(why) => {
+            let anywhere = boundary.first().copied().unwrap_or_default();
+            let mut points = boundary.to_vec();
+            points.resize(filled.mesh.n_vertices(), anywhere);
+            (points, None, Some(why.to_string()))
+        }
+    }
 }
 
 /// Positions by the embedding, or to start from.
@@ -180,11 +201,10 @@ fn place_from(
         let count = |cells: &[CellQuality]| cells.iter().filter(|c| c.valid).count();
         if count(&before) > count(&cells) {
             points.clone_from(start);
+            points[..boundary.len()].copy_from_slice(boundary);
             cells = before;
         }
     }
-    // The surface's points come back bit for bit, those that no quad uses included.
-    points[..boundary.len()].copy_from_slice(boundary);
     Placed { points, cells, embedding, refused, ways: 1 }
 }
 
@@ -198,7 +218,7 @@ fn judged_cells(filled: &Filled, points: &[[f64; 3]]) -> Vec<CellQuality> {
 impl Placed {
     /// Whether det J > 0 is certified on all of every hex.
     pub fn is_certified(&self) -> bool {
-        self.cells.iter().all(|c| c.valid)
+        !self.cells.is_empty() && self.cells.iter().all(|c| c.valid)
     }
 
     /// The least certified scaled Jacobian; -1 if a hex is not certified.
@@ -213,12 +233,13 @@ impl Placed {
 
     /// The numbers.
     pub fn report(&self) -> GeometryReport {
-        let least = |value: fn(&CellQuality) -> f64| self.cells.iter().map(value).fold(f64::INFINITY, f64::min);
+        let judged = !self.cells.is_empty();
+        let corner = self.cells.iter().map(|c| c.corner_scaled_jacobian).fold(f64::INFINITY, f64::min);
         GeometryReport {
             certified: self.cells.iter().filter(|c| c.valid).count(),
             hexes: self.cells.len(),
-            corner_scaled_jacobian: least(|c| c.corner_scaled_jacobian),
-            certified_scaled_jacobian: self.worst(),
+            corner_scaled_jacobian: judged.then_some(corner),
+            certified_scaled_jacobian: judged.then(|| self.worst()),
             embedding: self.embedding.clone(),
             refused: self.refused.clone(),
             ways: self.ways,
@@ -240,11 +261,17 @@ impl Placed {
 
 impl std::fmt::Display for GeometryReport {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let (Some(certified), Some(corner)) = (self.certified_scaled_jacobian, self.corner_scaled_jacobian) else {
+            return match &self.refused {
+                Some(why) => write!(f, "no positions were made: {why}"),
+                None => write!(f, "start positions, neither embedded nor judged"),
+            };
+        };
         if self.certified == self.hexes {
             return write!(
                 f,
-                "det J > 0 certified in all {} hexes, scaled Jacobian at least {:.6} (corners {:.6})",
-                self.hexes, self.certified_scaled_jacobian, self.corner_scaled_jacobian
+                "det J > 0 certified in all {} hexes, scaled Jacobian at least {certified:.6} (corners {corner:.6})",
+                self.hexes
             );
         }
         write!(f, "det J > 0 certified in {} of {} hexes only", self.certified, self.hexes)?;

@@ -25,7 +25,7 @@ pub use fill::{
     FillError, FillOptions, FillReport, FillResult, Filled, InteriorFrom, Route, Strategy, check_fillable, fill,
     mesh_data,
 };
-pub use geometry::{GeometryReport, Placed, boundary_points, place, place_best};
+pub use geometry::{GeometryReport, Placed, boundary_points, place, place_best, start_positions};
 pub use hexfill_mesh::{Context, Progress, StopReason};
 pub use hexfill_search::{SimplifyOptions, SimplifyReport};
 pub use placed_fill::{PlaceOptions, PlacedFill, fill_placed};

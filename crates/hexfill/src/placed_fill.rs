@@ -5,8 +5,9 @@
 //! filling stays.
 
 use crate::fill::{FillError, FillOptions, FillResult, Filled, Route, Strategy, fill};
-use crate::geometry::{Placed, boundary_points, place, place_best};
+use crate::geometry::{Placed, boundary_points, place, place_best, start_positions};
 use crate::problem::Problem;
+use hexfill_construct::CellChoice;
 use hexfill_mesh::{Context, QuadId, QuadSurface, StopReason, VertexId};
 use std::time::Duration;
 
@@ -14,7 +15,7 @@ use std::time::Duration;
 #[derive(Clone, Copy, Debug, Default)]
 #[non_exhaustive]
 pub struct PlaceOptions {
-    /// How to embed; `None`: start positions only.
+    /// How to embed; `None`: start positions only, judged only if the cells of the construction are embeddable ones.
     pub embed: Option<hexfill_embed::Options>,
     /// Keep the best of all fillings that were found, not each of them.
     pub best: bool,
@@ -66,7 +67,10 @@ pub fn fill_placed(
         embed => meshes
             .into_iter()
             .map(|mut filled| {
-                let placed = place(&mut filled, problem, &boundary, embed.as_ref(), &limited());
+                let placed = match embed {
+                    None if options.cells == CellChoice::Fewest => start_positions(&filled, &boundary, ctx),
+                    embed => place(&mut filled, problem, &boundary, embed.as_ref(), &limited()),
+                };
                 (filled, placed)
             })
             .collect(),

@@ -162,16 +162,20 @@ impl Frame {
     pub(crate) fn norm_products(&self, slack: f64) -> [f64; 27] {
         let n = self.e.map(|axis| axis.map(|v| norm(v) * (1.0 + 8.0 * UNIT) + slack));
         let mut sums = [0.0; 27];
-        let mut counts = [0.0f64; 27];
-        for i in 0..64usize {
-            let bit = |k: usize| i >> k & 1;
-            let (y, z, a1, z1, a2, y2) = (bit(0), bit(1), bit(2), bit(3), bit(4), bit(5));
-            let slot = at(a1 + a2, y + y2, z + z1);
-            sums[slot] += n[0][y + 2 * z] * n[1][a1 + 2 * z1] * n[2][a2 + 2 * y2];
-            counts[slot] += 1.0;
+        for z in 0..4usize {
+            // The bits of y, z pick the norm of J1, those of (a1, z1) and (a2, y2) the others.
+            let (y, z) = (z & 1, z >> 1);
+            for i in 0..4usize {
+                let (a1, z1) = (i & 1, i >> 1);
+                let pair = n[0][y + 2 * z] * n[1][a1 + 2 * z1];
+                for j in 0..4usize {
+                    let (a2, y2) = (j & 1, j >> 1);
+                    sums[at(a1 + a2, y + y2, z + z1)] += pair * n[2][a2 + 2 * y2];
+                }
+            }
         }
-        // Products and sums of positive numbers: at most 11 roundings.
-        std::array::from_fn(|i| sums[i] / counts[i] * (1.0 + 16.0 * UNIT))
+        // Products and sums of positive numbers: at most 11 roundings; the counts are powers of two.
+        std::array::from_fn(|i| sums[i] * WEIGHTS[i] * (1.0 + 16.0 * UNIT))
     }
 
     /// The edge vectors of the two halves along `axis`, up to a factor per direction that cancels in the scaled Jacobian.
@@ -193,6 +197,18 @@ impl Frame {
         halves
     }
 }
+
+/// One over the number of mixed products that make up a coefficient: half for each index that is 1.
+const WEIGHTS: [f64; 27] = {
+    let mut weights = [1.0; 27];
+    let mut i = 0;
+    while i < 27 {
+        let ones = (i % 3 == 1) as i32 + (i / 3 % 3 == 1) as i32 + (i / 9 == 1) as i32;
+        weights[i] = [1.0, 0.5, 0.25, 0.125][ones as usize];
+        i += 1;
+    }
+    weights
+};
 
 /// Relative error of [`Frame::coefficients`].
 pub(crate) const ERROR: f64 = 1024.0 * UNIT;

@@ -222,12 +222,18 @@ pub(crate) fn measure(
     })
 }
 
+/// Certified intervals are this short,
+const WIDTH: f64 = 1e-3;
+/// and those of hexes that may be the worst of the mesh this short.
+const WORST_WIDTH: f64 = 1e-6;
+
 /// The numbers of every hex, in order, on the current rayon pool. `None` where a hex has an index out of range or a position
-/// that is not finite, or no positions were given.
+/// that is not finite, or no positions were given. Certified intervals of the scaled Jacobian are at most 0.001 long, those of
+/// hexes that may be the worst 0.000001, unless that takes more than 2,000 boxes.
 pub fn cell_quality(input: &Judged<'_>) -> Vec<Option<CellQuality>> {
     let points = input.points.unwrap_or_default();
-    let effort = Effort { enough: f64::INFINITY, width: 1e-6, boxes: 2_000 };
-    input
+    let effort = |width: f64| Effort { enough: f64::INFINITY, width, boxes: 2_000 };
+    let mut cells: Vec<Option<CellQuality>> = input
         .hexes
         .par_iter()
         .map(|hex| {
@@ -237,20 +243,29 @@ pub fn cell_quality(input: &Judged<'_>) -> Vec<Option<CellQuality>> {
             let p = gather(hex, points);
             let s = sample(&p);
             let valid = decide(&p) == Positivity::Positive;
-            let bound = least(&p, effort);
-            let floor = if valid { 0.0 } else { -1.0 };
+            // What is not valid needs no lower bound.
+            let bound = least(&p, if valid { effort(WIDTH) } else { Effort { boxes: 1, ..effort(WIDTH) } });
             Some(CellQuality {
                 corner_scaled_jacobian: s.corner,
                 verdict_scaled_jacobian: s.verdict,
-                certified_lower: if valid { bound.lower.max(floor) } else { floor },
-                certified_upper: bound.upper.max(floor),
+                certified_lower: if valid { bound.lower.max(0.0) } else { -1.0 },
+                certified_upper: bound.upper.max(if valid { 0.0 } else { -1.0 }),
                 valid,
                 condition: s.condition,
                 edge_ratio: s.edge_ratio,
                 volume: s.volume,
             })
         })
-        .collect()
+        .collect();
+    let worst = cells.iter().flatten().map(|c| c.certified_upper).fold(f64::INFINITY, f64::min);
+    cells.par_iter_mut().zip(input.hexes).for_each(|(cell, hex)| {
+        if let Some(cell) = cell.as_mut().filter(|c| c.valid && c.certified_lower <= worst) {
+            let bound = least(&gather(hex, points), effort(WORST_WIDTH));
+            cell.certified_lower = cell.certified_lower.max(bound.lower);
+            cell.certified_upper = cell.certified_upper.min(bound.upper.max(0.0));
+        }
+    });
+    cells
 }
 
 /// Writes [`cell_quality`] as CSV: a header, then a line a hex; empty fields where there is no number.

@@ -34,24 +34,29 @@ struct Part {
     cell: Cell,
 }
 
-impl PartialEq for Part {
+/// A part by its place in a list, as parts are large; the heap gives the smallest lower bound first, then the oldest.
+struct Entry {
+    lower: f64,
+    part: usize,
+}
+
+impl PartialEq for Entry {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other) == Ordering::Equal
     }
 }
 
-impl Eq for Part {}
+impl Eq for Entry {}
 
-impl PartialOrd for Part {
+impl PartialOrd for Entry {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl Ord for Part {
-    /// The heap gives the smallest lower bound first.
+impl Ord for Entry {
     fn cmp(&self, other: &Self) -> Ordering {
-        other.lower.total_cmp(&self.lower)
+        other.lower.total_cmp(&self.lower).then(other.part.cmp(&self.part))
     }
 }
 
@@ -130,22 +135,26 @@ pub(crate) fn least(p: &[Vector; 8], effort: Effort) -> Interval {
     if whole.lower >= effort.enough || upper - whole.lower <= effort.width {
         return Interval { lower: whole.lower.min(upper), upper };
     }
-    let mut heap = BinaryHeap::new();
-    heap.push(whole);
+    let mut parts = vec![whole];
+    let mut heap = BinaryHeap::from([Entry { lower: parts[0].lower, part: 0 }]);
     let mut visited = 1;
-    while let Some(worst) = heap.peek() {
-        let lower = worst.lower;
+    while let Some(&Entry { lower, part: worst }) = heap.peek() {
         let done = lower >= effort.enough || upper - lower <= effort.width || upper <= 0.0;
-        if done || visited >= effort.boxes || worst.cell.depth >= 100 {
+        if done || visited >= effort.boxes || parts[worst].cell.depth >= 100 {
             return Interval { lower: lower.min(upper), upper };
         }
-        let Some(Part { frame, b, error, cell, .. }) = heap.pop() else { break };
+        heap.pop();
+        let Part { frame, b, error, cell, .. } = &parts[worst];
         let axis = cell.axis();
-        let [low, high] = halve(&b, axis);
+        let error = error + step;
+        let [low, high] = halve(b, axis);
         let [low_frame, high_frame] = frame.halves(axis);
         let [low_cell, high_cell] = cell.halves();
-        heap.push(part(low_frame, low, error + step, low_cell, slack, &mut upper));
-        heap.push(part(high_frame, high, error + step, high_cell, slack, &mut upper));
+        // One half takes the place of the whole.
+        let fresh = parts.len();
+        parts[worst] = part(low_frame, low, error, low_cell, slack, &mut upper);
+        parts.push(part(high_frame, high, error, high_cell, slack, &mut upper));
+        heap.extend([worst, fresh].map(|part| Entry { lower: parts[part].lower, part }));
         visited += 2;
     }
     Interval { lower: -1.0, upper }
