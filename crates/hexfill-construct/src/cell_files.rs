@@ -25,6 +25,8 @@ const CELL_FILES: &[(&str, &str)] = &[
 
 // The same patterns by cells that embed in the cube: more hexes, positions in their files.
 const EMBEDDED_CELL_FILES: &[(&str, &str)] = &[
+    ("bb-lddo.cell", include_str!("../data/cells/embedded/bb-lddo.cell")),
+    ("bb-ldoo.cell", include_str!("../data/cells/embedded/bb-ldoo.cell")),
     ("bw-ddlh.cell", include_str!("../data/cells/embedded/bw-ddlh.cell")),
     ("bw-dohl.cell", include_str!("../data/cells/embedded/bw-dohl.cell")),
     ("bw-dolh.cell", include_str!("../data/cells/embedded/bw-dolh.cell")),
