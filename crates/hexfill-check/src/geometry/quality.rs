@@ -225,11 +225,11 @@ pub(crate) fn measure(
 /// Certified intervals are this short,
 const WIDTH: f64 = 1e-3;
 /// and those of hexes that may be the worst of the mesh this short.
-const WORST_WIDTH: f64 = 1e-6;
+const WORST_WIDTH: f64 = 1e-9;
 
 /// The numbers of every hex, in order, on the current rayon pool. `None` where a hex has an index out of range or a position
 /// that is not finite, or no positions were given. Certified intervals of the scaled Jacobian are at most 0.001 long, those of
-/// hexes that may be the worst 0.000001, unless that takes more than 2,000 boxes.
+/// hexes that may be the worst 1e-9, unless that takes more than 2,000 boxes.
 pub fn cell_quality(input: &Judged<'_>) -> Vec<Option<CellQuality>> {
     let points = input.points.unwrap_or_default();
     let effort = |width: f64| Effort { enough: f64::INFINITY, width, boxes: 2_000 };
