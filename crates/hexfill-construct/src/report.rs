@@ -50,6 +50,8 @@ pub struct Report {
     pub n_split: [usize; 3],
     /// Hexes of the core (without those that joins replace).
     pub n_core_hexes: usize,
+    /// For a star-shaped surface with a core that is not a cone: the hexes that a cone would have had (of a bipartite surface).
+    pub n_cone_hexes: Option<usize>,
     /// Pairs of odd components joined by a chain.
     pub n_joins: usize,
     /// Hexes of the joins.
@@ -94,6 +96,10 @@ impl fmt::Display for Report {
             f,
             "core ({}): {} tetrahedra, split in 4/7/8: {four}/{seven}/{eight}, {} hexes",
             self.tets_by, self.n_tets, self.n_core_hexes
-        )
+        )?;
+        match self.n_cone_hexes {
+            Some(n) => write!(f, " (a cone from one point: {n}, but needles)"),
+            None => Ok(()),
+        }
     }
 }

@@ -4,8 +4,8 @@
 //! The template lives in `[-1, 1]^3` with the surface at z = -1 and the core above: corner 0 at (-1, -1), 1 at (-1, 1),
 //! 2 at (1, 1), 3 at (1, -1). All sides are planar and congruent: a point of a side has coordinates (u, z), u = -1 at
 //! the diagonal corner and +1 at the odd corner, so neighbours agree on it. The inner copy of the surface is the
-//! surface scaled by one half towards a point that sees all of it, if its centroid does, else an offset along the
-//! vertex normals by a part of the shortest edge at the vertex.
+//! surface scaled by one half towards a point that sees all of it, if the core is a cone from there, else an offset along
+//! the vertex normals by a part of the shortest edge at the vertex.
 
 use crate::ball::centroid;
 use crate::cell::{Cell, CellLibrary};
@@ -13,12 +13,13 @@ use crate::layer::Layer;
 use crate::pattern::{Pattern, Role, Side};
 use crate::split::CorePoints;
 use crate::tets::{TET_EDGES, TetComplex, others};
-use crate::vector::{Point, cross, dot, sub, volume};
+use crate::vector::{Point, bounding_box, cross, dot, sub, volume};
 use hexfill_mesh::cube::EDGES;
 use hexfill_mesh::{Dart, QuadId, QuadSurface};
 
-/// Share of the shortest edge by which the inner copy is moved inward.
+/// Share of the shortest edge by which the inner copy is moved inward; more where there is room.
 const OFFSET: f64 = 0.4;
+const OFFSET_IF_STAR: f64 = 0.6;
 
 /// Position of corner `k` of the template in the plane.
 const CORNERS: [[f64; 2]; 4] = [[-1.0, -1.0], [-1.0, 1.0], [1.0, 1.0], [1.0, -1.0]];
@@ -99,16 +100,19 @@ pub(crate) struct InnerCopy {
 }
 
 impl InnerCopy {
-    /// Half way to a point that sees the whole surface, if the centroid is one; else along the directions that all quads at
-    /// a vertex face, as far as every buffer cube keeps positive corners.
-    pub(crate) fn new(surface: &QuadSurface, points: &[Point]) -> Self {
+    /// Half way to `centre`, a point that sees the whole surface.
+    pub(crate) fn half_way(surface: &QuadSurface, points: &[Point], centre: Point) -> Self {
+        let step = points.iter().map(|&p| std::array::from_fn(|c| (centre[c] - p[c]) / 2.0)).collect();
+        Self { outer: points.to_vec(), step, first: surface.dart_of_vertices() }
+    }
+
+    /// Along the directions that all quads at a vertex face, as far as every buffer cube keeps positive corners. A
+    /// star-shaped surface has room for longer steps.
+    pub(crate) fn offset(surface: &QuadSurface, points: &[Point], is_star: bool) -> Self {
         let outer = points.to_vec();
         let first = surface.dart_of_vertices();
-        if let Some(centre) = star_centre(surface, points) {
-            let step = points.iter().map(|&p| std::array::from_fn(|c| (centre[c] - p[c]) / 2.0)).collect();
-            return Self { outer, step, first };
-        }
-        let mut copy = Self { outer, step: offsets(surface, points), first };
+        let share = if is_star { OFFSET_IF_STAR } else { OFFSET };
+        let mut copy = Self { outer, step: offsets(surface, points, share), first };
         copy.shorten(surface, |copy, blame| {
             for q in 0..surface.n_quads() {
                 let corners = surface.quad(QuadId::new(q)).map(|v| v.index());
@@ -199,24 +203,57 @@ impl InnerCopy {
     }
 }
 
-/// The centroid, if it sees every corner of every quad of a single component: the surface is then star-shaped.
+/// A point that sees every corner of every quad of a single component, if one is found: the surface is then star-shaped. The
+/// centroid, or else a point moved away from the plane it is least behind, over and over by less (a subgradient method for the
+/// centre of the largest ball in the kernel). What is returned was tested.
 pub(crate) fn star_centre(surface: &QuadSurface, points: &[Point]) -> Option<Point> {
+    const STEPS: usize = 300;
+    if surface.n_components() != 1 {
+        return None;
+    }
     let corners: Vec<[u32; 3]> =
         surface.darts().map(|d| [surface.origin(d.prev()).0, surface.origin(d).0, surface.target(d).0]).collect();
-    let centre = centroid(points, &corners);
-    let sees = |t: &[u32; 3]| {
-        let [a, b, c] = t.map(|v| sub(points[v as usize], centre));
-        dot(a, cross(b, c)) > 0.0
+    let sees = |centre: Point| {
+        corners.iter().all(|t| {
+            let [a, b, c] = t.map(|v| sub(points[v as usize], centre));
+            dot(a, cross(b, c)) > 0.0
+        })
     };
-    (surface.n_components() == 1 && corners.iter().all(sees)).then_some(centre)
+    let mut centre = centroid(points, &corners);
+    if sees(centre) {
+        return Some(centre);
+    }
+    let planes: Vec<(Point, f64)> = corners
+        .iter()
+        .filter_map(|t| {
+            let [a, b, c] = t.map(|v| points[v as usize]);
+            let normal = cross(sub(b, a), sub(c, a));
+            let length = dot(normal, normal).sqrt();
+            let unit = normal.map(|x| x / length);
+            (length > 0.0).then(|| (unit, dot(unit, a)))
+        })
+        .collect();
+    let (_, _, size) = bounding_box(points);
+    for step in 0..STEPS {
+        // How far the point is behind each plane.
+        let depth = |(normal, height): &(Point, f64)| height - dot(*normal, centre);
+        let least = planes.iter().min_by(|a, b| depth(a).total_cmp(&depth(b)))?;
+        if depth(least) > 0.0 && sees(centre) {
+            return Some(centre);
+        }
+        // From a place outside straight behind the plane; less and less of it, so that it settles.
+        let by = (0.25 * size / (step + 1) as f64).max(-depth(least));
+        centre = std::array::from_fn(|c| centre[c] - by * least.0[c]);
+    }
+    None
 }
 
 /// How often a step may be halved.
 const SHORTENINGS: usize = 12;
 
-/// Per vertex: a step inward, a part of the shortest edge there long, in the direction whose smallest product with the
+/// Per vertex: a step inward, `share` of the shortest edge there long, in the direction whose smallest product with the
 /// inward normals of the quads' corners is largest (found by leaning towards the worst one, over and over).
-fn offsets(surface: &QuadSurface, points: &[Point]) -> Vec<Point> {
+fn offsets(surface: &QuadSurface, points: &[Point], share: f64) -> Vec<Point> {
     let at = |d: Dart| points[surface.origin(d).index()];
     let scaled = |p: Point, by: f64| p.map(|x| x * by);
     let first = surface.dart_of_vertices();
@@ -239,7 +276,7 @@ fn offsets(surface: &QuadSurface, points: &[Point]) -> Vec<Point> {
             sum = std::array::from_fn(|c| sum[c] + weight * worst[c]);
         }
         let length = dot(sum, sum).sqrt();
-        (length > 1e-9 && shortest.is_finite()).then(|| scaled(sum, OFFSET * shortest / length))
+        (length > 1e-9 && shortest.is_finite()).then(|| scaled(sum, share * shortest / length))
     };
     (0..points.len()).map(|v| offset(v).unwrap_or([0.0; 3])).collect()
 }

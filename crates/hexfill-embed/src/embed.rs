@@ -10,6 +10,7 @@ use crate::jacobian::{Frame, columns, weights_at};
 use crate::local;
 use crate::maxmin::{self, Goal};
 use crate::measure::log_condition;
+use crate::patch::Incidence;
 use crate::problem::Problem;
 use crate::raise;
 use crate::random::Random;
@@ -26,8 +27,14 @@ use rayon::prelude::*;
 /// Starts tried at once after the first.
 const BATCH: u32 = 4;
 
+/// The cells named in the report.
+const WORST_CELLS: usize = 10;
+
 /// Meshes of so many hexes are left to the linear programs.
 const SMALL: usize = 100;
+
+/// Meshes of more hexes are raised where they are poor only, however poor that is.
+const LARGE: usize = 2000;
 
 /// A balanced result keeps this share of the optimum.
 const BALANCED_SHARE: f64 = 0.95;
@@ -235,9 +242,22 @@ impl Normal {
         let mut cells: Vec<(f64, f64, f64)> = vec![(0.0, 0.0, 0.0); problem.hexes.len()];
         problem.map_hexes(&mut cells, |h| {
             let p = problem.corners_of(h, &judged);
-            let worst = Frame::new(&p).worst(1.0, 1e-9, 2000);
+            let worst = Frame::new(&p).worst(1.0, 1e-2, 20);
             let log = POSITIONS.iter().map(|at| log_condition(&columns(&p, &weights_at(at.map(f64::from)))));
             (worst.lower, worst.upper, log.fold(0.0, f64::max))
+        });
+        // Only what may be among the ten worst is cut fine.
+        let mut uppers: Vec<f64> = cells.iter().map(|c| c.1).collect();
+        let tenth = uppers.len().min(WORST_CELLS) - 1;
+        let (_, &mut limit, _) = uppers.select_nth_unstable_by(tenth, f64::total_cmp);
+        let coarse = cells.clone();
+        problem.map_hexes(&mut cells, |h| {
+            let (lower, upper, log) = coarse[h];
+            if lower > limit {
+                return (lower, upper, log);
+            }
+            let worst = Frame::new(&problem.corners_of(h, &judged)).worst(1.0, 1e-9, 2000);
+            (worst.lower, worst.upper, log)
         });
         let bad = bad_cells(problem, &judged);
         for &h in &bad {
@@ -245,7 +265,7 @@ impl Normal {
         }
         let mut order: Vec<usize> = (0..cells.len()).collect();
         order.sort_by(|&a, &b| cells[a].1.total_cmp(&cells[b].1).then(a.cmp(&b)));
-        order.truncate(10);
+        order.truncate(WORST_CELLS);
         let shortest = problem
             .hexes
             .iter()
@@ -411,7 +431,8 @@ impl Search<'_> {
         }
         if let Some(given) = self.start.filter(|_| number == 0 && !bad.is_empty() && problem.symmetry.is_none()) {
             // A start that could not be untangled comes back no worse than it was.
-            let rank = |points: &[Vector], bad: usize| (bad, -maxmin::judge(problem, points, 1.0).worst);
+            let rank =
+                |points: &[Vector], bad: usize| (bad, -maxmin::judge_near_worst(problem, points, 0.0, 0.0).worst);
             let before = bad_cells(problem, given);
             let (old, new) = (rank(given, before.len()), rank(&points, bad.len()));
             if old.0 < new.0 || old.0 == new.0 && old.1 <= new.1 {
@@ -426,7 +447,7 @@ impl Search<'_> {
             stopped = self.improve(&mut points, target, context);
             bad = bad_cells(problem, &points);
         }
-        let value = maxmin::judge(problem, &points, 1.0).worst;
+        let value = maxmin::judge_near_worst(problem, &points, 0.0, 0.0).worst;
         Candidate { number, points, untangled, n_bad: bad.len(), value, stopped }
     }
 
@@ -439,12 +460,15 @@ impl Search<'_> {
         if n_hexes <= SMALL {
             return self.climb(points, target, self.options.programs, context);
         }
-        // A round judges every cell; very large meshes get fewer.
-        let share = if n_hexes > self.options.local_limit { 8 } else { 5 };
+        // A round judges every cell.
+        let rounds = self.options.programs / 5;
         let by_patches = |points: &mut Vec<Vector>| {
-            local::climb_worst(problem, points, target, self.options.programs / share, context)
+            local::climb_worst(problem, &Incidence::new(problem), points, target, rounds, context)
         };
         let patchy = n_hexes > self.options.whole_limit && problem.symmetry.is_none();
+        if patchy && n_hexes > LARGE {
+            return local::raise_large(problem, points, target, context);
+        }
         if patchy && local::is_worst_isolated(problem, points) {
             return by_patches(points);
         }
@@ -458,7 +482,7 @@ impl Search<'_> {
         }
         if bad_cells(problem, &smooth).is_empty() {
             let stopped = raise::raise(problem, &mut smooth, target, limits, context);
-            let worst = |points: &[Vector]| maxmin::judge(problem, points, 1.0).worst;
+            let worst = |points: &[Vector]| maxmin::judge_near_worst(problem, points, 0.0, 0.0).worst;
             if worst(&smooth) > worst(points) {
                 *points = smooth;
             }

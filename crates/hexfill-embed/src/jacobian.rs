@@ -69,7 +69,7 @@ pub(crate) const CORNERS: u64 = {
 };
 
 /// The members of [`CORNERS`].
-const CORNER_MIXED: [usize; 8] = {
+pub(crate) const CORNER_MIXED: [usize; 8] = {
     let mut list = [0; 8];
     let (mut n, mut found) = (0, 0);
     while n < 64 {
@@ -210,10 +210,12 @@ impl Frame {
         let mut lower = f64::INFINITY;
         let mut boxes = 1;
         let mut open = vec![Part { bound: self.lower_bound(), frame: *self, origin, size, depth: 0 }];
-        while let Some(part) = open.pop() {
+        // The box with the least bound comes next, so the first one that needs no cut ends the search.
+        while let Some(next) = (0..open.len()).min_by(|&a, &b| open[a].bound.total_cmp(&open[b].bound)) {
+            let part = open.swap_remove(next);
             if part.bound >= cutoff || part.bound >= upper - tolerance || boxes >= max_boxes || upper <= 0.0 {
-                lower = lower.min(part.bound);
-                continue;
+                lower = part.bound;
+                break;
             }
             let axis = part.depth % 3;
             for (side, half) in part.frame.halves(axis).into_iter().enumerate() {

@@ -20,6 +20,7 @@ mod energy;
 mod error;
 mod jacobian;
 mod lbfgs;
+mod lift;
 mod local;
 mod maxmin;
 mod measure;

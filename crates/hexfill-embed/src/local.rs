@@ -5,6 +5,7 @@
 //! same way: the worst cells are seeds, and each patch climbs with its own linear programs.
 //! Results of a round are written back in the order of the patches, whatever the threads did.
 
+use crate::lift;
 use crate::maxmin::{self, Goal};
 use crate::patch::{Incidence, Patch, patches};
 use crate::problem::Problem;
@@ -104,7 +105,7 @@ fn each(
             work(part, &mut new, &quiet);
             let rank = |p: &[Vector]| {
                 let bad = bad_cells(&part.problem, p).len();
-                (bad, -maxmin::judge(&part.problem, p, 1.0).worst)
+                (bad, -maxmin::judge_near_worst(&part.problem, p, 0.0, 0.0).worst)
             };
             let (a, b) = (rank(&new), rank(&old));
             (a.0 < b.0 || a.0 == b.0 && a.1 < b.1).then_some(new)
@@ -119,31 +120,60 @@ fn each(
 
 /// Whether the worst cells are few: then patches round them are quicker than barriers over the whole mesh.
 pub(crate) fn is_worst_isolated(problem: &Problem, points: &[Vector]) -> bool {
-    let cells = maxmin::judge(problem, points, 1.0);
+    let cells = maxmin::judge_near_worst(problem, points, 0.0, SEED_BAND);
     let limit = seed_limit(cells.worst);
     50 * cells.each.iter().filter(|c| c.0 <= limit).count() <= problem.hexes.len()
 }
 
 /// Cells up to this value are taken together with the worst.
 fn seed_limit(worst: f64) -> f64 {
-    (1.5 * worst).max(worst + 0.02)
+    worst + (0.5 * worst).clamp(0.02, SEED_BAND)
+}
+
+/// How far above the worst such cells lie at most.
+const SEED_BAND: f64 = 0.1;
+
+/// Turns of barriers and programs in [`raise_large`], and rounds of programs in each.
+const TURNS: usize = 3;
+const ROUNDS: usize = 4;
+
+/// Raises the worst cells of meshes too large for the ways of small ones. All cells must be valid. The barriers of
+/// [`crate::lift`] do nearly all of it; where a few cells hold the rest back, programs in small patches loosen them.
+pub(crate) fn raise_large(
+    problem: &Problem,
+    points: &mut [Vector],
+    target: f64,
+    context: &Context<'_>,
+) -> Option<StopReason> {
+    let incidence = Incidence::new(problem);
+    let mut visits = lift::visits(problem.hexes.len());
+    for _ in 0..TURNS {
+        let stopped = lift::lift(problem, &incidence, points, target, &mut visits, context);
+        let lifted = maxmin::judge_near_worst(problem, points, 0.0, 0.0).worst;
+        let stopped = stopped.or_else(|| climb_worst(problem, &incidence, points, target, ROUNDS, context));
+        let climbed = maxmin::judge_near_worst(problem, points, 0.0, 0.0).worst;
+        if stopped.is_some() || climbed >= target || climbed < 1.05 * lifted {
+            return stopped;
+        }
+    }
+    None
 }
 
 /// Raises the worst cells patch by patch, for meshes too large for one program. All cells must be valid.
 pub(crate) fn climb_worst(
     problem: &Problem,
+    incidence: &Incidence,
     points: &mut [Vector],
     target: f64,
     rounds: usize,
     context: &Context<'_>,
 ) -> Option<StopReason> {
-    let incidence = Incidence::new(problem);
     let mut stale = 0;
     for round in 0..rounds {
         if let Some(reason) = context.stop() {
             return Some(reason);
         }
-        let cells = maxmin::judge(problem, points, 1.0);
+        let cells = maxmin::judge_near_worst(problem, points, 0.0, SEED_BAND);
         if cells.worst >= target {
             return None;
         }
@@ -154,7 +184,10 @@ pub(crate) fn climb_worst(
         let mut seeds = order.iter().take_while(|&&h| cells.each[h].0 <= limit).count().max(1);
         let rings = 1 + stale;
         let parts = loop {
-            let parts = patches(problem, &incidence, &order[..seeds], rings);
+            let parts = patches(problem, incidence, &order[..seeds], rings);
+            if seeds == 1 && parts.iter().any(|p| p.problem.hexes.len() > 2 * CLIMB_CELLS) {
+                return None;
+            }
             if seeds == 1 || parts.iter().all(|p| p.problem.hexes.len() <= CLIMB_CELLS) {
                 break parts;
             }
@@ -167,7 +200,7 @@ pub(crate) fn climb_worst(
             let limits = maxmin::Limits { iterations: 25, band: 0.2, tolerance: 1e-6 };
             maxmin::climb(&part.problem, points, Goal::ScaledJacobian { target }, limits, context);
         });
-        let after = maxmin::judge(problem, points, 1.0).worst;
+        let after = maxmin::judge_near_worst(problem, points, 0.0, 0.0).worst;
         if after < cells.worst + 1e-3 * cells.worst.abs() {
             stale += 1;
             if stale > 2 {

@@ -85,6 +85,17 @@ pub(crate) fn judge(problem: &Problem, points: &[Vector], cutoff: f64) -> Cells 
     Cells { each, worst }
 }
 
+/// Judges all cells, those more than `band` above the worst and `floor` only as far as to know that.
+pub(crate) fn judge_near_worst(problem: &Problem, points: &[Vector], floor: f64, band: f64) -> Cells {
+    let mut corners = vec![0.0; problem.hexes.len()];
+    problem.map_hexes(&mut corners, |h| {
+        let p = problem.corners_of(h, points);
+        corner_points().map(|at| scaled(&columns(&p, &weights_at(at)))).fold(f64::INFINITY, f64::min)
+    });
+    // The worst over whole cells is at most the worst corner.
+    judge(problem, points, corners.into_iter().fold(1.0, f64::min).max(floor).max(0.0) + band)
+}
+
 /// The value the goal wants large: the worst scaled Jacobian, or minus the logarithm of the worst condition number.
 fn merit(problem: &Problem, points: &[Vector], cells: &Cells, goal: Goal) -> f64 {
     match goal {
@@ -115,7 +126,10 @@ pub(crate) fn climb(
     context: &Context<'_>,
 ) -> Climb {
     const SEEN: f64 = 0.02;
-    let mut cells = judge(problem, points, 1.0);
+    let mut cells = match goal {
+        Goal::ScaledJacobian { .. } => judge_near_worst(problem, points, 0.0, limits.band + SEEN),
+        Goal::Condition { .. } => judge(problem, points, 1.0),
+    };
     let mut value = merit(problem, points, &cells, goal);
     let target = if let Goal::ScaledJacobian { target } = goal { target } else { 0.0 };
     let mut radius: f64 = 0.5;

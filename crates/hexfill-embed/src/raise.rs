@@ -8,7 +8,7 @@
 
 use crate::jacobian::{columns, scaled_with_gradient, weights_at};
 use crate::lbfgs::{self, minimise};
-use crate::maxmin::{Cells, judge};
+use crate::maxmin::{Cells, judge_near_worst};
 use crate::problem::Problem;
 use crate::vector::{Vector, add, norm, sub};
 use hexfill_mesh::cube::CORNER_NEIGHBOURS;
@@ -22,6 +22,9 @@ pub(crate) struct Limits {
     /// L-BFGS iterations for each.
     pub(crate) iterations: usize,
 }
+
+/// Cells so far above the worst are not cut into boxes.
+const SEEN: f64 = 0.02;
 
 /// Widths of the barrier, one after the other.
 const WIDTHS: [f64; 5] = [0.5, 0.25, 0.12, 0.06, 0.03];
@@ -37,7 +40,7 @@ pub(crate) fn raise(
     if problem.n_variables() == 0 {
         return None;
     }
-    let mut cells = judge(problem, points, 1.0);
+    let mut cells = judge_near_worst(problem, points, 0.0, SEEN);
     let mut inner: Vec<Vec<Vector>> = vec![Vec::new(); problem.hexes.len()];
     let mut level = 0;
     let mut gap = 0.5;
@@ -57,7 +60,7 @@ pub(crate) fn raise(
         let barrier = Barrier { problem, inner: &inner, t: worst - gap * width.min(2.0 * worst.max(0.01)), width };
         let mut trial = points.clone();
         let stopped = barrier.descend(&mut trial, limits.iterations, context);
-        let trial_cells = judge(problem, &trial, 1.0);
+        let trial_cells = judge_near_worst(problem, &trial, worst, SEEN);
         let gain = trial_cells.worst - worst;
         if gain > 0.0 {
             *points = trial;
@@ -196,6 +199,7 @@ impl Barrier<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::maxmin::judge;
     use crate::random::Random;
     use crate::samples::grid;
 

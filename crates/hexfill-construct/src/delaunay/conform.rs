@@ -24,6 +24,8 @@ pub(crate) enum Origin {
     Edge(u32),
     /// A point in a triangle of the surface.
     Triangle(u32),
+    /// A point inside.
+    Inside,
 }
 
 /// Why there is no answer.
@@ -51,9 +53,9 @@ pub(crate) struct SurfaceEdge {
 
 /// The surface and the tetrahedralisation that is to conform to it.
 pub(crate) struct Conforming<'a> {
-    dt: Delaunay,
+    pub(super) dt: Delaunay,
     triangles: &'a [[u32; 3]],
-    origin: Vec<Origin>,
+    pub(super) origin: Vec<Origin>,
     edges: Vec<SurfaceEdge>,
     /// Per triangle its edges; edge `k` joins its vertices `k` and `k + 1`.
     triangle_edges: Vec<[u32; 3]>,
@@ -62,7 +64,7 @@ pub(crate) struct Conforming<'a> {
     /// Per triangle: the points in it.
     inner: Vec<Vec<u32>>,
     /// How many points may still be added.
-    budget: usize,
+    pub(super) budget: usize,
 }
 
 /// The tets inside the surface with their boundary.
@@ -111,7 +113,7 @@ impl<'a> Conforming<'a> {
         Ok(Self { dt, triangles, origin, edges, triangle_edges, triangles_at, inner, budget })
     }
 
-    fn at(&self, v: u32) -> Point {
+    pub(super) fn at(&self, v: u32) -> Point {
         self.dt.points[v as usize]
     }
 
@@ -202,7 +204,7 @@ impl<'a> Conforming<'a> {
     fn triangles_of(&self, v: u32) -> &[u32] {
         match &self.origin[v as usize] {
             Origin::Input => &self.triangles_at[v as usize],
-            Origin::Far => &[],
+            Origin::Far | Origin::Inside => &[],
             Origin::Edge(e) => &self.edges[*e as usize].triangles,
             Origin::Triangle(t) => std::slice::from_ref(t),
         }
@@ -217,7 +219,7 @@ impl<'a> Conforming<'a> {
     }
 
     /// The triangle of the surface that all three vertices belong to, unless they all lie on one of its edges.
-    fn common(&self, face: [u32; 3]) -> Option<u32> {
+    pub(super) fn common(&self, face: [u32; 3]) -> Option<u32> {
         let [a, b, c] = face.map(|v| self.triangles_of(v));
         let found = a.iter().copied().filter(|t| b.contains(t) && c.contains(t));
         found
@@ -356,8 +358,10 @@ impl<'a> Conforming<'a> {
         Ok(())
     }
 
-    /// The tets inside the surface. It must be complete (see [`refine`](Self::refine)).
-    pub fn inside(self) -> Result<Inside, Failure> {
+    /// Per tet whether it lies inside the surface, which must be complete (see [`refine`](Self::refine)); and the faces of the
+    /// surface as seen from both sides: tet, place in it, corners, triangle.
+    #[allow(clippy::type_complexity)] // two halves of one walk
+    fn sides(&self) -> Result<(Vec<bool>, Vec<(usize, usize, [u32; 3], u32)>), Failure> {
         let n_tets = self.dt.tets.len();
         let shared = |tet: [u32; 4]| {
             let first = self.triangles_of(tet[0]);
@@ -417,7 +421,25 @@ impl<'a> Conforming<'a> {
             }
             keep[r] = behind > 0;
         }
-        let is_kept = |t: u32| t != NONE && keep[region[t as usize] as usize];
+        let inside = region.iter().map(|&r| r != NONE && keep[r as usize]).collect();
+        Ok((inside, faces))
+    }
+
+    /// Per tet whether it lies inside.
+    ///
+    /// # Errors
+    /// As [`inside`](Self::inside).
+    pub(super) fn kept(&self) -> Result<Vec<bool>, Failure> {
+        Ok(self.sides()?.0)
+    }
+
+    /// The tets inside the surface. It must be complete (see [`refine`](Self::refine)).
+    ///
+    /// # Errors
+    /// A surface whose sides contradict each other.
+    pub fn inside(self) -> Result<Inside, Failure> {
+        let (kept, faces) = self.sides()?;
+        let is_kept = |t: u32| t != NONE && kept[t as usize];
         let boundary: Vec<([u32; 3], u32)> = faces
             .into_iter()
             .filter(|&(t, i, ..)| is_kept(t as u32) && !is_kept(self.dt.around[t][i]))

@@ -5,13 +5,13 @@
 //! tries all triangulations of the ring of vertices round it, by dynamic programming (Klincsek 1980). No flip touches the boundary.
 
 use super::mesh::NONE;
-use super::solid::{FLOOR, Solid};
+use super::solid::{FLOOR_INSIDE, Solid};
 use crate::tets::{OUTWARD, TET_EDGES};
 use crate::vector::{Point, cross, dot, sub};
 use hexfill_mesh::{Context, StopReason};
 
 /// Tets of less quality are worked on.
-const GOOD: f64 = 0.05;
+const GOOD: f64 = 0.15;
 
 /// Tets of less quality are worth a new point.
 const FLAT: f64 = 1e-4;
@@ -71,7 +71,7 @@ impl Solid {
             return true;
         }
         let before = self.quality(tet);
-        if before > FLOOR {
+        if before > FLOOR_INSIDE {
             return false;
         }
         for v in tet {
@@ -96,7 +96,7 @@ impl Solid {
                 }
                 let before = old.iter().map(|&u| self.quality(self.tets[u as usize])).fold(f64::INFINITY, f64::min);
                 let after = new.iter().map(|&u| self.quality(u)).fold(f64::INFINITY, f64::min);
-                if after > 0.0 && after >= before.min(5.0 * FLOOR) {
+                if after > 0.0 && after >= before.min(5.0 * FLOOR_INSIDE) {
                     self.replace(&old, &new);
                     break;
                 }

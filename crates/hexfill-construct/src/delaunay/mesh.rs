@@ -33,7 +33,8 @@ pub(crate) struct Delaunay {
     /// Per vertex a tet of it.
     pub tet_at: Vec<u32>,
     free: Vec<u32>,
-    mark: Vec<u32>,
+    /// Per tet the stamp of the last search that met it.
+    pub mark: Vec<u32>,
     stamp: u32,
     last: u32,
 }
@@ -71,7 +72,7 @@ impl Delaunay {
     }
 
     /// A tet that contains `p`, its boundary included, found by walking from `from`.
-    fn locate(&self, p: Point, from: u32) -> u32 {
+    pub fn locate(&self, p: Point, from: u32) -> u32 {
         let mut t = from;
         // A visibility walk in a Delaunay tetrahedralisation never comes back (Edelsbrunner 1990).
         'walk: loop {
@@ -116,9 +117,8 @@ impl Delaunay {
         if let Some(&same) = self.tets[first as usize].iter().find(|&&w| self.at(w) == p) {
             return Err(same);
         }
-        self.stamp += 1;
+        let stamp = self.new_stamp(first);
         let mut hole = vec![first];
-        self.mark[first as usize] = self.stamp;
         // Faces of the hole, counter-clockwise seen from outside it, with the tet behind.
         let mut faces: Vec<([u32; 3], u32)> = Vec::new();
         let mut next = 0;
@@ -128,12 +128,11 @@ impl Delaunay {
             for (i, face) in OUTWARD.iter().enumerate() {
                 let other = self.around[t as usize][i];
                 if other != NONE {
-                    if self.mark[other as usize] == self.stamp {
+                    if self.mark[other as usize] == stamp {
                         continue;
                     }
-                    let [a, b, c, d] = self.tets[other as usize].map(|w| coord(self.at(w)));
-                    if insphere(b, c, d, a, coord(p)) > 0.0 {
-                        self.mark[other as usize] = self.stamp;
+                    if self.is_in_sphere(other, p) {
+                        self.mark[other as usize] = stamp;
                         hole.push(other);
                         continue;
                     }
@@ -178,6 +177,19 @@ impl Delaunay {
             self.around[u as usize][j as usize] = t;
         }
         Ok(())
+    }
+
+    /// A stamp that no tet is marked with but this one.
+    pub fn new_stamp(&mut self, t: u32) -> u32 {
+        self.stamp += 1;
+        self.mark[t as usize] = self.stamp;
+        self.stamp
+    }
+
+    /// Whether the circumsphere of a tet strictly contains `p`.
+    pub fn is_in_sphere(&self, t: u32, p: Point) -> bool {
+        let [a, b, c, d] = self.tets[t as usize].map(|w| coord(self.at(w)));
+        insphere(b, c, d, a, coord(p)) > 0.0
     }
 
     /// The tets of a vertex.

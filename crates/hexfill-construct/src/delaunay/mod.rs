@@ -2,7 +2,8 @@
 //!
 //! 1. The Delaunay tetrahedralisation of the surface's vertices (`mesh.rs`).
 //! 2. Points are added to edges and triangles of the surface until it is a union of faces (`conform.rs`).
-//! 3. What lies inside is kept; every point added to the boundary is taken off it again, and inner points are
+//! 3. Points are added inside where tets are needles (`grade.rs`).
+//! 4. What lies inside is kept; every point added to the boundary is taken off it again, and inner points are
 //!    removed as long as all tets stay positive (`solid.rs`), with flips against flat tets (`flips.rs`).
 //!
 //! All decisions about orientation are exact (adaptive predicates, Shewchuk 1997), and no random choice is made. A
@@ -11,6 +12,7 @@
 
 mod conform;
 mod flips;
+mod grade;
 mod mesh;
 mod solid;
 
@@ -89,6 +91,7 @@ impl DelaunayTets {
         let budget = self.points_per_triangle.saturating_mul(triangles.len());
         let mut conforming = Conforming::new(&own, &triangles, budget)?;
         conforming.refine(ctx)?;
+        conforming.grade(ctx)?;
         let mut solid = Solid::new(conforming.inside()?, &triangles, own.len());
         if let Err(left) = solid.clear_boundary(ctx).map_err(Failure::Stopped)? {
             return Err(format!("{left} points could not be taken off the boundary").into());
