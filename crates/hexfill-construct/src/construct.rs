@@ -24,6 +24,9 @@ use hexfill_mesh::{Context, HexMesh, QuadId, QuadSurface, improper_pairs};
 /// with 384 0.023 (0.127).
 const CONE_QUADS: usize = 250;
 
+/// Star-shaped surfaces with more quads are coned all the same: points inside them take minutes (a million hexes and more).
+const GRADED_QUADS: usize = 20_000;
+
 /// Which colouring to use.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum RouteChoice {
@@ -143,7 +146,8 @@ pub fn construct(
     // quads is all needles.
     let wants_shape = options.cells == CellChoice::Embeddable && points.is_some();
     let is_asked_for = options.ball_core != BallCore::Auto;
-    let cone = centre.filter(|_| !wants_shape || is_asked_for || surface.n_quads() <= CONE_QUADS);
+    let is_coned = surface.n_quads() <= CONE_QUADS || surface.n_quads() > GRADED_QUADS;
+    let cone = centre.filter(|_| !wants_shape || is_asked_for || is_coned);
     let offset = |p| InnerCopy::offset(surface, p, centre.is_some());
     let half_way = |p, centre| InnerCopy::half_way(surface, p, centre);
     let mut inner = points.map(|p| cone.map_or_else(|| offset(p), |centre| half_way(p, centre)));

@@ -60,6 +60,9 @@ impl InteriorTets for DelaunayTets {
     }
 }
 
+/// Surfaces of more triangles get no points for the shape of the tets alone, which take minutes.
+const GRADED_TRIANGLES: usize = 40_000;
+
 impl DelaunayTets {
     fn run(&self, request: &TetRequest<'_>, points: &[[f64; 3]], ctx: &Context<'_>) -> Result<TetComplex, Failure> {
         // Only what the triangles use.
@@ -91,7 +94,9 @@ impl DelaunayTets {
         let budget = self.points_per_triangle.saturating_mul(triangles.len());
         let mut conforming = Conforming::new(&own, &triangles, budget)?;
         conforming.refine(ctx)?;
-        conforming.grade(ctx)?;
+        if triangles.len() <= GRADED_TRIANGLES {
+            conforming.grade(ctx)?;
+        }
         let mut solid = Solid::new(conforming.inside()?, &triangles, own.len());
         if let Err(left) = solid.clear_boundary(ctx).map_err(Failure::Stopped)? {
             return Err(format!("{left} points could not be taken off the boundary").into());
