@@ -40,11 +40,18 @@ fn totals_do_not_depend_on_the_number_of_ranks() {
 
 #[test]
 fn a_worker_that_reports_an_error_is_survived() {
-    let Some(output) = mpirun(3, &["5", "--chunks", "10", "--fail-rank", "2"]) else { return };
-    assert!(output.status.success());
-    let report = json(&output);
-    assert_eq!((&report["counts"]["classes"], &report["undone"]), (&240.into(), &0.into()));
-    assert_eq!(report["failures"].as_array().map(Vec::len), Some(1));
+    // On a busy machine the other worker may have done everything before this one asks: then nothing failed, and the run
+    // shows nothing.
+    let has_failed = (0..20).any(|_| {
+        let Some(output) = mpirun(3, &["6", "--chunks", "40", "--fail-rank", "2"]) else { return true };
+        assert!(output.status.success());
+        let report = json(&output);
+        assert_eq!((&report["counts"]["classes"], &report["undone"]), (&4026.into(), &0.into()));
+        let failures = report["failures"].as_array().map_or(0, Vec::len);
+        assert!(failures <= 1, "{report}");
+        failures == 1
+    });
+    assert!(has_failed, "the worker never got a chunk");
     // With no other worker the chunks stay undone, and the exit code says so.
     let Some(output) = mpirun(2, &["5", "--chunks", "10", "--fail-rank", "1"]) else { return };
     assert!(!output.status.success());
