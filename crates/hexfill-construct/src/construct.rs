@@ -4,7 +4,7 @@ use crate::assemble::{count_cells, place_cells};
 use crate::ball::{BallCore, BallTets};
 use crate::cell::{CellChoice, CellLibrary};
 use crate::colouring::{Colouring, all_black, colouring};
-use crate::delaunay::DelaunayTets;
+use crate::delaunay::{DelaunayTets, GRADED_TRIANGLES};
 use crate::error::ConstructError;
 use crate::handlebody::HandlebodyTets;
 use crate::join::{fill_join, joins};
@@ -23,9 +23,6 @@ use hexfill_mesh::{Context, HexMesh, QuadId, QuadSurface, improper_pairs};
 /// Measured on ellipsoids: with 96 quads the worst scaled Jacobian is 0.103 (Delaunay tetrahedra: 0.139), with 216 0.044 (0.108),
 /// with 384 0.023 (0.127).
 const CONE_QUADS: usize = 250;
-
-/// Star-shaped surfaces with more quads are coned all the same: points inside them take minutes (a million hexes and more).
-const GRADED_QUADS: usize = 20_000;
 
 /// Which colouring to use.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -146,7 +143,8 @@ pub fn construct(
     // quads is all needles.
     let wants_shape = options.cells == CellChoice::Embeddable && points.is_some();
     let is_asked_for = options.ball_core != BallCore::Auto;
-    let is_coned = surface.n_quads() <= CONE_QUADS || surface.n_quads() > GRADED_QUADS;
+    // Where Delaunay tetrahedra get no points for their shape, they are needles, too.
+    let is_coned = surface.n_quads() <= CONE_QUADS || triangles.len() > GRADED_TRIANGLES;
     let cone = centre.filter(|_| !wants_shape || is_asked_for || is_coned);
     let offset = |p| InnerCopy::offset(surface, p, centre.is_some());
     let half_way = |p, centre| InnerCopy::half_way(surface, p, centre);

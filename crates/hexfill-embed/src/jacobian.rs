@@ -9,7 +9,7 @@
 //!
 //! These are judgements in floating point, used to steer and to report; proofs are the business of `hexfill-check`.
 
-use crate::vector::{Vector, cross, det, dot, midpoint, norm, scale, sub};
+use crate::vector::{Vector, add, cross, det, dot, midpoint, norm, scale, sub};
 
 /// The edge vectors of a box: four along x indexed by `y + 2 z`, four along y by `x + 2 z`, four along z by `x + 2 y`.
 #[derive(Clone, Copy, Debug)]
@@ -299,6 +299,16 @@ pub(crate) fn scaled_with_gradient(c: &[Vector; 3]) -> Option<(f64, [Vector; 3])
 pub(crate) fn scaled(c: &[Vector; 3]) -> f64 {
     let s = det(c[0], c[1], c[2]) / (norm(c[0]) * norm(c[1]) * norm(c[2]));
     if s.is_finite() { s } else { -1.0 }
+}
+
+/// Adds `slope` times the gradient by columns `g` at a point with these weights to the gradient by corner.
+#[inline]
+pub(crate) fn add_by_corner(gradient: &mut [Vector; 8], weights: &[Vector; 8], slope: f64, g: &[Vector; 3]) {
+    for (sum, w) in gradient.iter_mut().zip(weights) {
+        for d in 0..3 {
+            *sum = add(*sum, g[d].map(|x| slope * w[d] * x));
+        }
+    }
 }
 
 #[cfg(test)]

@@ -8,7 +8,9 @@
 //! bisection. Then tau is raised, as long as the worst value follows. All bounds are counts, so the result does not depend on
 //! the machine or the threads; the work is about linear in the number of poor cells.
 
-use crate::jacobian::{CORNER_MIXED, FRAME_EDGES, Frame, MIXED, columns, scaled, scaled_with_gradient, weights_at};
+use crate::jacobian::{
+    CORNER_MIXED, FRAME_EDGES, Frame, MIXED, add_by_corner, columns, scaled, scaled_with_gradient, weights_at,
+};
 use crate::lbfgs::{self, minimise};
 use crate::maxmin::{judge, judge_near_worst};
 use crate::patch::{Incidence, Patch, patches};
@@ -224,11 +226,7 @@ impl Barrier<'_> {
             let (v, slope, _) = self.phi(s);
             value += v;
             if slope != 0.0 {
-                for (sum, w) in gradient.iter_mut().zip(&weights) {
-                    for d in 0..3 {
-                        *sum = add(*sum, g[d].map(|x| slope * w[d] * x));
-                    }
-                }
+                add_by_corner(&mut gradient, &weights, slope, &g);
             }
         }
         (value, gradient)
@@ -260,16 +258,9 @@ impl Barrier<'_> {
             sum
         });
         problem.by_variable(|s| {
-            let mut shortest = f64::INFINITY;
-            let mut sum = 0.0;
-            for &place in problem.places(s) {
-                let (h, corner) = (place as usize / 8, place as usize % 8);
-                sum += at_corners[h][corner];
-                let hex = &problem.hexes[h];
-                for n in CORNER_NEIGHBOURS[corner] {
-                    shortest = shortest.min(norm(sub(points[hex[n] as usize], points[hex[corner] as usize])));
-                }
-            }
+            let sum =
+                problem.places(s).iter().map(|&place| at_corners[place as usize / 8][place as usize % 8]).sum::<f64>();
+            let shortest = problem.shortest_edge_at(s, points);
             1.0 / (sum + 1.0 / (self.height * shortest * shortest).max(1e-300))
         })
     }

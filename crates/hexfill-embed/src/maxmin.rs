@@ -11,7 +11,7 @@ use crate::jacobian::{FRAME_EDGES, Frame, MIXED, columns, scaled, scaled_with_gr
 use crate::measure::{log_condition, log_condition_with_gradient};
 use crate::problem::Problem;
 use crate::program::Program;
-use crate::vector::{Vector, cross, norm, sub};
+use crate::vector::{Vector, cross};
 use hexfill_mesh::cube::POSITIONS;
 use hexfill_mesh::{Context, StopReason};
 
@@ -196,19 +196,7 @@ pub(crate) fn climb(
 
 /// Per variable: how far its vertex may move at radius 1, its shortest edge.
 fn reach(problem: &Problem, points: &[Vector]) -> Vec<f64> {
-    problem.by_variable(|s| {
-        let mut shortest = f64::INFINITY;
-        for &place in problem.places(s) {
-            let hex = &problem.hexes[place as usize / 8];
-            let corner = place as usize % 8;
-            for [a, b] in FRAME_EDGES {
-                if a == corner || b == corner {
-                    shortest = shortest.min(norm(sub(points[hex[a] as usize], points[hex[b] as usize])));
-                }
-            }
-        }
-        shortest.max(1e-9)
-    })
+    problem.by_variable(|s| problem.shortest_edge_at(s, points).max(1e-9))
 }
 
 fn linearise(problem: &Problem, points: &[Vector], cells: &Cells, goal: Goal, value: f64, band: f64) -> Vec<Row> {

@@ -5,7 +5,8 @@
 //! that order, whatever the number of threads, so results are the same to the last bit.
 
 use crate::symmetry::{Orbit, Symmetry};
-use crate::vector::Vector;
+use crate::vector::{Vector, norm, sub};
+use hexfill_mesh::cube::CORNER_NEIGHBOURS;
 use rayon::prelude::*;
 
 /// Marks a fixed vertex.
@@ -62,6 +63,19 @@ impl Problem {
     #[inline]
     pub(crate) fn corners_of(&self, hex: usize, points: &[Vector]) -> [Vector; 8] {
         self.hexes[hex].map(|v| points[v as usize])
+    }
+
+    /// The shortest edge at any corner that the variable `s` has.
+    pub(crate) fn shortest_edge_at(&self, s: usize, points: &[Vector]) -> f64 {
+        let mut shortest = f64::INFINITY;
+        for &place in self.places(s) {
+            let hex = &self.hexes[place as usize / 8];
+            let corner = place as usize % 8;
+            for n in CORNER_NEIGHBOURS[corner] {
+                shortest = shortest.min(norm(sub(points[hex[n] as usize], points[hex[corner] as usize])));
+            }
+        }
+        shortest
     }
 
     /// The places `8 * hex + corner` of a variable's vertex, ascending.

@@ -6,11 +6,11 @@
 //! Then t follows the worst value upwards; the distance to it and the width shrink when nothing is gained. A step counts only if the
 //! worst value over whole cells rises, as judged by bisection, so validity is never traded for corners.
 
-use crate::jacobian::{columns, scaled_with_gradient, weights_at};
+use crate::jacobian::{add_by_corner, columns, scaled_with_gradient, weights_at};
 use crate::lbfgs::{self, minimise};
 use crate::maxmin::{Cells, judge_near_worst};
 use crate::problem::Problem;
-use crate::vector::{Vector, add, norm, sub};
+use crate::vector::{Vector, sub};
 use hexfill_mesh::cube::CORNER_NEIGHBOURS;
 use hexfill_mesh::{Context, StopReason};
 
@@ -169,11 +169,7 @@ impl Barrier<'_> {
             let Some((s, g)) = scaled_with_gradient(&columns(&p, &weights)) else { return (f64::INFINITY, gradient) };
             let slope = psi(s);
             if slope != 0.0 {
-                for (sum, w) in gradient.iter_mut().zip(&weights) {
-                    for d in 0..3 {
-                        *sum = add(*sum, g[d].map(|x| slope * w[d] * x));
-                    }
-                }
+                add_by_corner(&mut gradient, &weights, slope, &g);
             }
         }
         (value, gradient)
@@ -183,14 +179,7 @@ impl Barrier<'_> {
     fn inverse_diagonal(&self, points: &[Vector]) -> Vec<f64> {
         let problem = self.problem;
         problem.by_variable(|s| {
-            let mut shortest = f64::INFINITY;
-            for &place in problem.places(s) {
-                let hex = &problem.hexes[place as usize / 8];
-                let corner = place as usize % 8;
-                for n in CORNER_NEIGHBOURS[corner] {
-                    shortest = shortest.min(norm(sub(points[hex[n] as usize], points[hex[corner] as usize])));
-                }
-            }
+            let shortest = problem.shortest_edge_at(s, points);
             0.01 * self.width * shortest * shortest
         })
     }

@@ -60,8 +60,8 @@ impl InteriorTets for DelaunayTets {
     }
 }
 
-/// Surfaces of more triangles get no points for the shape of the tets alone, which take minutes.
-const GRADED_TRIANGLES: usize = 40_000;
+/// Surfaces of more triangles get no points for the shape of the tets alone, which take minutes (a million hexes and more).
+pub(crate) const GRADED_TRIANGLES: usize = 40_000;
 
 impl DelaunayTets {
     fn run(&self, request: &TetRequest<'_>, points: &[[f64; 3]], ctx: &Context<'_>) -> Result<TetComplex, Failure> {
