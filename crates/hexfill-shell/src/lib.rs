@@ -1,0 +1,2 @@
+//! Shelling: closed quad surfaces of any size swept inward by their own dual curves, until nothing is left to fill.
+
