@@ -1,0 +1,232 @@
+//! Lifting: a mesh of the coarse surface becomes one of the fine surface by cutting every hex along its sheets.
+//!
+//! Each sheet of the coarse mesh takes the multiplicity of the chords it ends in; one without an end takes 1. A hex whose
+//! three sheets have multiplicities a, b, c is cut into a x b x c. Points on the surface are the fine surface's own, known
+//! from the compression, so nothing is left to be matched afterwards.
+
+use crate::compress::Coarse;
+use hexfill_mesh::cube::{EDGES, FACETS, POSITIONS};
+use rustc_hash::FxHashMap;
+
+/// A sheet that ends in chords of different multiplicities.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) struct MultiplicityClash;
+
+/// The fine mesh: `n_fine` vertices of the surface first, then new ones.
+pub(crate) fn lift(coarse: &Coarse, n_fine: u32, hexes: &[[u32; 8]]) -> Result<(u32, Vec<[u32; 8]>), MultiplicityClash> {
+    let segments = segments(coarse, hexes)?;
+    let mut lattice = Lattice::new(coarse, n_fine);
+    let mut fine = Vec::new();
+    for hex in hexes {
+        let sizes = AXES.map(|[i, j]| segments[&pair(hex[i], hex[j])]);
+        let [a, b, c] = sizes.map(|s| s as usize);
+        let points = lattice.points_of(hex, sizes);
+        let at = |i: usize, j: usize, k: usize| points[(k * (b + 1) + j) * (a + 1) + i];
+        for k in 0..c {
+            for j in 0..b {
+                for i in 0..a {
+                    fine.push(POSITIONS.map(|p| at(i + p[0] as usize, j + p[1] as usize, k + p[2] as usize)));
+                }
+            }
+        }
+    }
+    Ok((lattice.n_vertices, fine))
+}
+
+/// Edges from corner 0 along x, y and z.
+const AXES: [[usize; 2]; 3] = [[0, 1], [0, 3], [0, 4]];
+
+fn pair(a: u32, b: u32) -> [u32; 2] {
+    if a < b { [a, b] } else { [b, a] }
+}
+
+/// Per edge of the coarse mesh: into how many it is cut.
+fn segments(coarse: &Coarse, hexes: &[[u32; 8]]) -> Result<FxHashMap<[u32; 2], u32>, MultiplicityClash> {
+    let mut ids: FxHashMap<[u32; 2], u32> = FxHashMap::default();
+    let mut edges = Vec::new();
+    for hex in hexes {
+        for [i, j] in EDGES {
+            let e = pair(hex[i], hex[j]);
+            ids.entry(e).or_insert_with(|| {
+                edges.push(e);
+                edges.len() as u32 - 1
+            });
+        }
+    }
+    let mut parent: Vec<u32> = (0..edges.len() as u32).collect();
+    fn root(parent: &mut [u32], mut i: u32) -> u32 {
+        while parent[i as usize] != i {
+            parent[i as usize] = parent[parent[i as usize] as usize];
+            i = parent[i as usize];
+        }
+        i
+    }
+    for hex in hexes {
+        for axis in 0..3 {
+            let mut first = None;
+            for [i, j] in EDGES {
+                let moves = (0..3).find(|&k| POSITIONS[i][k] != POSITIONS[j][k]);
+                if moves != Some(axis) {
+                    continue;
+                }
+                let r = root(&mut parent, ids[&pair(hex[i], hex[j])]);
+                match first {
+                    None => first = Some(r),
+                    Some(f) => {
+                        let f = root(&mut parent, f);
+                        parent[r.max(f) as usize] = r.min(f);
+                    }
+                }
+            }
+        }
+    }
+    let mut of_root = vec![0u32; edges.len()];
+    for d in coarse.surface.darts() {
+        let e = pair(coarse.surface.origin(d).0, coarse.surface.target(d).0);
+        let Some(&id) = ids.get(&e) else { continue };
+        let slot = &mut of_root[root(&mut parent, id) as usize];
+        let length = coarse.length[d.index()];
+        if *slot != 0 && *slot != length {
+            return Err(MultiplicityClash);
+        }
+        *slot = length;
+    }
+    Ok(edges.iter().map(|&e| (e, of_root[root(&mut parent, ids[&e]) as usize].max(1))).collect())
+}
+
+/// Ids of the fine points, as they are asked for.
+struct Lattice {
+    n_vertices: u32,
+    /// Fine vertex of each coarse one; coarse vertices beyond the surface's get theirs on demand.
+    corner: FxHashMap<u32, u32>,
+    /// Points inside an edge, from its smaller vertex on.
+    edge: FxHashMap<[u32; 2], Vec<u32>>,
+    /// Points inside a quad: rows from its smallest vertex towards the smaller of that one's neighbours.
+    quad: FxHashMap<[u32; 4], Vec<u32>>,
+}
+
+/// A quad seen from its smallest vertex, towards that one's smaller neighbour first.
+struct Frame {
+    key: [u32; 4],
+    /// Corner the rows start at, and whether rows run along the second axis.
+    corner: usize,
+    swapped: bool,
+}
+
+/// `corners` in the order (0,0), (1,0), (1,1), (0,1).
+fn frame(corners: [u32; 4]) -> Frame {
+    let corner = (0..4).min_by_key(|&i| corners[i]).expect("four corners");
+    let [ahead, behind] = [corners[(corner + 1) & 3], corners[(corner + 3) & 3]];
+    let swapped = behind < ahead;
+    let mut key = corners;
+    key.sort_unstable();
+    Frame { key, corner, swapped }
+}
+
+impl Frame {
+    /// Index into the stored points of the inner point (i, j), `0 < i < a`, `0 < j < b`.
+    fn index(&self, i: u32, j: u32, a: u32, b: u32) -> usize {
+        // Steps along the cycle's first and second direction from the start corner.
+        let (u, v, nu, nv) = match self.corner {
+            0 => (i, j, a, b),
+            1 => (j, a - i, b, a),
+            2 => (a - i, b - j, a, b),
+            _ => (b - j, i, b, a),
+        };
+        let (u, v, nu) = if self.swapped { (v, u, nv) } else { (u, v, nu) };
+        ((v - 1) * (nu - 1) + u - 1) as usize
+    }
+}
+
+impl Lattice {
+    fn new(coarse: &Coarse, n_fine: u32) -> Self {
+        let mut lattice = Self {
+            n_vertices: n_fine,
+            corner: coarse.vertices.iter().enumerate().map(|(v, fine)| (v as u32, fine.0)).collect(),
+            edge: FxHashMap::default(),
+            quad: FxHashMap::default(),
+        };
+        for (quad, grid) in coarse.surface.quads().iter().zip(&coarse.grids) {
+            let corners = quad.map(|v| v.0);
+            let (a, b) = (grid.width, grid.height);
+            let at = |i: u32, j: u32| grid.vertices[(j * (a + 1) + i) as usize].0;
+            let sides: [(usize, usize, Vec<u32>); 4] = [
+                (0, 1, (1..a).map(|i| at(i, 0)).collect()),
+                (1, 2, (1..b).map(|j| at(a, j)).collect()),
+                (3, 2, (1..a).map(|i| at(i, b)).collect()),
+                (0, 3, (1..b).map(|j| at(0, j)).collect()),
+            ];
+            for (from, to, mut points) in sides {
+                let (from, to) = (corners[from], corners[to]);
+                if from > to {
+                    points.reverse();
+                }
+                lattice.edge.insert(pair(from, to), points);
+            }
+            let frame = frame(corners);
+            let mut inner = vec![0; (a as usize - 1) * (b as usize - 1)];
+            for j in 1..b {
+                for i in 1..a {
+                    inner[frame.index(i, j, a, b)] = at(i, j);
+                }
+            }
+            lattice.quad.insert(frame.key, inner);
+        }
+        lattice
+    }
+
+    /// The points of a hex cut into `a x b x c`, x fastest.
+    fn points_of(&mut self, hex: &[u32; 8], [a, b, c]: [u32; 3]) -> Vec<u32> {
+        let sizes = [a, b, c];
+        let mut points = vec![u32::MAX; (a as usize + 1) * (b as usize + 1) * (c as usize + 1)];
+        let index = |p: [u32; 3]| ((p[2] * (b + 1) + p[1]) * (a + 1) + p[0]) as usize;
+        let scaled = |corner: usize| -> [u32; 3] { std::array::from_fn(|k| u32::from(POSITIONS[corner][k]) * sizes[k]) };
+        let next_id = &mut self.n_vertices;
+        let mut fresh = || {
+            *next_id += 1;
+            *next_id - 1
+        };
+        for (i, &v) in hex.iter().enumerate() {
+            points[index(scaled(i))] = *self.corner.entry(v).or_insert_with(&mut fresh);
+        }
+        for [i, j] in EDGES {
+            let axis = (0..3).find(|&k| POSITIONS[i][k] != POSITIONS[j][k]).expect("an edge has a direction");
+            let n = sizes[axis];
+            let (from, to) = if hex[i] < hex[j] { (i, j) } else { (j, i) };
+            let ids = self.edge.entry(pair(hex[i], hex[j])).or_insert_with(|| (1..n).map(|_| fresh()).collect());
+            for s in 1..n {
+                let mut p = scaled(from);
+                p[axis] = if POSITIONS[to][axis] == 1 { s } else { n - s };
+                points[index(p)] = ids[s as usize - 1];
+            }
+        }
+        for facet in FACETS {
+            // Two axes of the facet: from its corner 0 to 1, and from 0 to 3.
+            let axis = |from: usize, to: usize| {
+                (0..3).find(|&k| POSITIONS[from][k] != POSITIONS[to][k]).expect("neighbours differ in one axis")
+            };
+            let (x, y) = (axis(facet[0], facet[1]), axis(facet[0], facet[3]));
+            let (nx, ny) = (sizes[x], sizes[y]);
+            if nx < 2 || ny < 2 {
+                continue;
+            }
+            let frame = frame(facet.map(|i| hex[i]));
+            let n_inner = (nx as usize - 1) * (ny as usize - 1);
+            let ids = self.quad.entry(frame.key).or_insert_with(|| (0..n_inner).map(|_| fresh()).collect());
+            for j in 1..ny {
+                for i in 1..nx {
+                    let mut p = scaled(facet[0]);
+                    p[x] = if POSITIONS[facet[1]][x] == 1 { i } else { nx - i };
+                    p[y] = if POSITIONS[facet[3]][y] == 1 { j } else { ny - j };
+                    points[index(p)] = ids[frame.index(i, j, nx, ny)];
+                }
+            }
+        }
+        for p in &mut points {
+            if *p == u32::MAX {
+                *p = fresh();
+            }
+        }
+        points
+    }
+}

@@ -1,0 +1,131 @@
+//! [`Void`]: what is left to fill while a surface is swept inward, its front, and what was glued already.
+//!
+//! Invariants: the front is closed and oriented as the surface (outward of the void); `twin[twin[d]] = d`; every pair of
+//! vertices of one cell or front quad is in the pair table with its kind; `wanted` and `length` agree on both darts of an
+//! edge. Darts are `4 * quad + side`.
+
+use crate::compress::Coarse;
+use crate::pairs::PairTable;
+use rustc_hash::FxHashMap;
+
+/// How much less than its angle says an edge inside a pillow differs from flat: the pillow's hexes take up the rest.
+const SOFTENED: f32 = 0.3;
+
+/// The void with its front.
+#[derive(Clone, Debug)]
+pub(crate) struct Void {
+    /// The front.
+    pub quads: Vec<[u32; 4]>,
+    pub twin: Vec<u32>,
+    /// Per dart: hexes still wanted round its edge.
+    pub wanted: Vec<f32>,
+    /// Per dart: fine edges on its edge.
+    pub length: Vec<u32>,
+    pub n_vertices: u32,
+    /// Vertices below this lie on the surface.
+    pub n_surface: u32,
+    pub hexes: Vec<[u32; 8]>,
+    pub pairs: PairTable,
+}
+
+#[inline]
+pub(crate) fn next(d: u32) -> u32 {
+    (d & !3) | ((d + 1) & 3)
+}
+
+#[inline]
+pub(crate) fn prev(d: u32) -> u32 {
+    (d & !3) | ((d + 3) & 3)
+}
+
+#[inline]
+pub(crate) fn opposite(d: u32) -> u32 {
+    d ^ 2
+}
+
+impl Void {
+    /// Nothing glued yet.
+    pub fn new(coarse: &Coarse) -> Self {
+        let surface = &coarse.surface;
+        let quads: Vec<[u32; 4]> = surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
+        let mut pairs = PairTable::default();
+        for &quad in &quads {
+            pairs.put_quad(quad);
+        }
+        Self {
+            twin: surface.darts().map(|d| surface.twin(d).0).collect(),
+            wanted: coarse.wanted.clone(),
+            length: coarse.length.clone(),
+            n_vertices: surface.n_vertices() as u32,
+            n_surface: surface.n_vertices() as u32,
+            hexes: Vec::new(),
+            pairs,
+            quads,
+        }
+    }
+
+    #[inline]
+    pub fn origin(&self, d: u32) -> u32 {
+        self.quads[(d >> 2) as usize][(d & 3) as usize]
+    }
+
+    #[inline]
+    pub fn target(&self, d: u32) -> u32 {
+        self.origin(next(d))
+    }
+
+    pub fn n_darts(&self) -> u32 {
+        4 * self.quads.len() as u32
+    }
+
+    /// One hex on every quad of the front: what is inside is then free of the surface. Always proper.
+    pub fn pillow(&mut self) {
+        let mut inner = FxHashMap::default();
+        for quad in &mut self.quads {
+            let outer = *quad;
+            for v in quad.iter_mut() {
+                *v = *inner.entry(*v).or_insert_with(|| {
+                    self.n_vertices += 1;
+                    self.n_vertices - 1
+                });
+            }
+            let [a, b, c, d] = *quad;
+            self.hexes.push([a, b, c, d, outer[0], outer[1], outer[2], outer[3]]);
+        }
+        for hex in &self.hexes[self.hexes.len() - self.quads.len()..] {
+            let fits = self.pairs.put_hex(hex);
+            debug_assert!(fits, "a pillow is proper with everything");
+        }
+        for w in &mut self.wanted {
+            *w = 2.0 + SOFTENED * (*w - 2.0);
+        }
+    }
+
+    /// Replaces the front. `edges` has for every dart of the new quads what is wanted there and its length.
+    /// `None`, and nothing changes, if the quads do not close to a surface.
+    pub fn set_front(&mut self, quads: Vec<[u32; 4]>, wanted: Vec<f32>, length: Vec<u32>) -> Option<()> {
+        let twin = pair_darts(&quads)?;
+        (self.quads, self.twin, self.wanted, self.length) = (quads, twin, wanted, length);
+        Some(())
+    }
+}
+
+/// The twin of every dart; `None` if an edge is not in two quads that run along it in opposite directions.
+fn pair_darts(quads: &[[u32; 4]]) -> Option<Vec<u32>> {
+    let mut open: FxHashMap<(u32, u32), u32> = FxHashMap::default();
+    open.reserve(4 * quads.len());
+    for (q, quad) in quads.iter().enumerate() {
+        for i in 0..4 {
+            if open.insert((quad[i], quad[(i + 1) & 3]), (4 * q + i) as u32).is_some() {
+                return None;
+            }
+        }
+    }
+    let mut twin = Vec::with_capacity(4 * quads.len());
+    for quad in quads {
+        for i in 0..4 {
+            twin.push(*open.get(&(quad[(i + 1) & 3], quad[i]))?);
+        }
+    }
+    Some(twin)
+}
