@@ -69,3 +69,14 @@ pub fn shell(
     }
     shelling
 }
+
+impl std::fmt::Display for Shelling {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "shelling from {} coarse quads: ", self.coarse_quads)?;
+        match self.meshes.len() {
+            0 if self.left == usize::MAX => write!(f, "stopped"),
+            0 => write!(f, "{} quads left", self.left),
+            n => write!(f, "{n} meshes"),
+        }
+    }
+}

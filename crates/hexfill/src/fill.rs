@@ -1,5 +1,6 @@
 //! `fill`: from a problem to verified meshes. Picks the strategy, and lets nothing out that the judge refused.
 
+use crate::choose::Prefer;
 use crate::components::{depths, fill_apart};
 use crate::geometry::boundary_points;
 use crate::problem::Problem;
@@ -14,6 +15,7 @@ use hexfill_search::{
     Atlas, AtlasError, Cavity, FillOptions as InwardOptions, GrowOptions, Growth, GrowthLog, MAX_CAP, MAX_QUADS,
     SimplifyOptions, fill_from_atlas,
 };
+use hexfill_shell::{ShellOptions, shell};
 use serde::Serialize;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -22,9 +24,12 @@ use std::sync::Arc;
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 #[non_exhaustive]
 pub enum Strategy {
-    /// Atlas, then inward flips; what they do not fill is constructed.
+    /// Atlas, shelling, inward flips; what they do not fill is constructed. With coordinates the best mesh is taken, see
+    /// [`Prefer`].
     #[default]
     Auto,
+    /// Shelling only: the surface swept inward by its own dual curves.
+    Shell,
     /// Atlas, inward flips, then growth towards the surface until it is reached or time is up.
     Atlas,
     /// Construction only.
@@ -74,6 +79,10 @@ pub struct FillOptions {
     /// the time that is left, nine tenths if [`cells`](Self::cells) asks for the fewest hexes (nothing is embedded then).
     /// A mesh made smaller is harder to embed.
     pub simplify: Option<SimplifyOptions>,
+    /// How to shell.
+    pub shell: ShellOptions,
+    /// What to prefer among certified meshes.
+    pub prefer: Prefer,
 }
 
 impl Default for FillOptions {
@@ -91,6 +100,8 @@ impl Default for FillOptions {
             interior: InteriorFrom::BuiltIn,
             cells: CellChoice::Embeddable,
             simplify: None,
+            shell: ShellOptions::default(),
+            prefer: Prefer::default(),
         }
     }
 }
@@ -102,6 +113,8 @@ impl Default for FillOptions {
 pub enum Route {
     /// Looked up in the atlas.
     Atlas,
+    /// Swept inward by the surface's dual curves.
+    Shelling,
     /// Hexes glued inward, the rest from the atlas.
     InwardFlips,
     /// Reached by growing an atlas towards it.
@@ -231,10 +244,23 @@ pub(crate) fn fill_component(
         });
     }
     let mut result = FillResult { meshes: Vec::new(), stop: StopReason::Finished, tried: Vec::new() };
-    if small && options.strategy != Strategy::Construct {
+    let by_atlas = matches!(options.strategy, Strategy::Auto | Strategy::Atlas);
+    let by_shelling = matches!(options.strategy, Strategy::Auto | Strategy::Shell);
+    if small && by_atlas {
+        // What the atlas does not hold is shelled before inward flips have their turn.
+        let cavities = if options.strategy == Strategy::Auto && options.count == 1 && !options.improve { 1 } else { options.inward_cavities };
+        search(surface, &FillOptions { inward_cavities: cavities, ..options.clone() }, ctx, &mut result)?;
+    }
+    if result.meshes.len() < options.count && by_shelling && ctx.stop().is_none() {
+        for filled in shelled(problem, options, ctx, &mut result)? {
+            accept(surface, filled.mesh, filled.route, None, options, &mut result)?;
+        }
+    }
+    if small && result.meshes.is_empty() && options.strategy == Strategy::Auto && ctx.stop().is_none() {
         search(surface, options, ctx, &mut result)?;
     }
-    if result.meshes.is_empty() && options.strategy != Strategy::Atlas && ctx.stop().is_none() {
+    let may_construct = matches!(options.strategy, Strategy::Auto | Strategy::Construct);
+    if result.meshes.is_empty() && may_construct && ctx.stop().is_none() {
         construct(problem, options, ctx, &mut result)?;
     }
     if result.stop == StopReason::Finished {
@@ -244,8 +270,28 @@ pub(crate) fn fill_component(
     Ok(result)
 }
 
+/// Complete meshes by shelling, judged, those with least cost first.
+pub(crate) fn shelled(
+    problem: &Problem,
+    options: &FillOptions,
+    ctx: &Context<'_>,
+    result: &mut FillResult,
+) -> Result<Vec<Filled>, FillError> {
+    let points = boundary_points(problem);
+    let made = shell(&problem.surface, points.as_deref(), &options.shell, ctx);
+    result.tried.push(made.to_string());
+    let mut meshes = Vec::new();
+    for shelled in made.meshes {
+        if shelled.mesh.n_hexes() as u64 <= u64::from(options.max_hexes) {
+            verify(&problem.surface, &shelled.mesh, Route::Shelling)?;
+            meshes.push(Filled { mesh: shelled.mesh, route: Route::Shelling, start: None });
+        }
+    }
+    Ok(meshes)
+}
+
 /// Atlas, inward flips and, if nothing else may follow, growth.
-fn search(
+pub(crate) fn search(
     surface: &QuadSurface,
     options: &FillOptions,
     ctx: &Context<'_>,
@@ -331,7 +377,7 @@ fn grow_towards(
 const VARIANTS_PER_MESH: u64 = 4;
 
 /// The construction for everything else. Several meshes are variants of it that cost the same.
-fn construct(
+pub(crate) fn construct(
     problem: &Problem,
     options: &FillOptions,
     ctx: &Context<'_>,

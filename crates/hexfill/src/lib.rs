@@ -13,6 +13,7 @@
 //! ```
 
 pub mod catalog;
+mod choose;
 mod components;
 mod fill;
 mod geometry;
@@ -21,17 +22,19 @@ mod placement;
 mod problem;
 mod simplify;
 
+pub use choose::Prefer;
 pub use fill::{
     FillError, FillOptions, FillReport, FillResult, Filled, InteriorFrom, Route, Strategy, check_fillable, fill,
     mesh_data,
 };
 pub use geometry::{GeometryReport, Placed, boundary_points, place, place_best, start_positions};
 pub use hexfill_mesh::{Context, Progress, StopReason};
+pub use hexfill_shell::ShellOptions;
 pub use hexfill_search::{SimplifyOptions, SimplifyReport};
 pub use placed_fill::{PlaceOptions, PlacedFill, fill_placed};
 pub use problem::{Problem, ProblemError, is_named};
 pub use simplify::{SimplifiedData, SimplifyError, simplify};
 pub use {
     hexfill_check as check, hexfill_construct as construct, hexfill_embed as embed, hexfill_enumerate as enumerate,
-    hexfill_io as io, hexfill_mesh as mesh, hexfill_search as search, hexfill_view as view,
+    hexfill_io as io, hexfill_mesh as mesh, hexfill_search as search, hexfill_shell as shell, hexfill_view as view,
 };

@@ -4,7 +4,8 @@
 //! constructed, whose cells were chosen for their coordinates. Nothing is lost: where nothing is certified, the smallest
 //! filling stays.
 
-use crate::fill::{FillError, FillOptions, FillResult, Filled, Route, Strategy, fill};
+use crate::choose::fill_best;
+use crate::fill::{FillError, FillOptions, FillResult, Filled, Strategy, check_fillable, fill, search};
 use crate::geometry::{Placed, boundary_points, place, place_best, start_positions};
 use crate::problem::Problem;
 use hexfill_construct::CellChoice;
@@ -53,13 +54,23 @@ pub fn fill_placed(
     how: &PlaceOptions,
     ctx: &Context<'_>,
 ) -> Result<PlacedFill, FillError> {
-    let FillResult { meshes, stop, mut tried } = fill(problem, options, ctx)?;
+    if let (Some(embed), Some(boundary)) = (&how.embed, boundary_points(problem))
+        && matches!(options.strategy, Strategy::Auto | Strategy::Shell)
+        && options.count == 1
+        && !options.improve
+        && !how.best
+        && problem.surface.n_components() == 1
+    {
+        check_fillable(&problem.surface)?;
+        return fill_best(problem, options, how, embed, &boundary, ctx);
+    }
+    let FillResult { meshes, stop, tried } = fill(problem, options, ctx)?;
     let Some(boundary) = boundary_points(problem).filter(|_| !meshes.is_empty()) else {
         return Ok(PlacedFill { meshes: meshes.into_iter().map(|m| (m, None)).collect(), stop, tried, choice: None });
     };
     let limited = || how.limit.map_or(*ctx, |limit| ctx.with_time_limit(limit));
     let mut choice = None;
-    let mut placed: Vec<(Filled, Placed)> = match &how.embed {
+    let placed: Vec<(Filled, Placed)> = match &how.embed {
         Some(embed) if how.best => {
             choice = Some(format!("the best of {} meshes", meshes.len()));
             place_best(&meshes, problem, &boundary, embed, &limited()).into_iter().collect()
@@ -75,69 +86,44 @@ pub fn fill_placed(
             })
             .collect(),
     };
-    if let (Some(embed), [(first, first_placed)], Strategy::Auto) = (&how.embed, &mut placed[..], options.strategy)
-        && (options.count == 1 || how.best)
-        && !options.improve
-        && first.route != Route::Construction
-        && !first_placed.is_certified()
-        && first_placed.refused.is_none()
-    {
-        let next = Next { problem, options, embed, boundary: &boundary, has_best: how.best };
-        if let Some(why) = no_room(&problem.surface, &boundary) {
-            choice = Some(format!("no other mesh was tried, since none can be valid: {why}"));
-        } else if let Some((filled, placed)) = next.valid(&limited, ctx, &mut tried)? {
-            choice = Some(format!("a smaller mesh of {} hexes was found, but did not embed", first.mesh.n_hexes()));
-            (*first, *first_placed) = (filled, placed);
-        }
-    }
     let meshes = placed.into_iter().map(|(filled, placed)| (filled, Some(placed))).collect();
     Ok(PlacedFill { meshes, stop, tried, choice })
 }
 
 /// What to try after the first filling.
-struct Next<'a> {
-    problem: &'a Problem,
-    options: &'a FillOptions,
-    embed: &'a hexfill_embed::Options,
-    boundary: &'a [[f64; 3]],
-    has_best: bool,
+pub(crate) struct Next<'a> {
+    pub problem: &'a Problem,
+    pub options: &'a FillOptions,
+    pub embed: &'a hexfill_embed::Options,
+    pub boundary: &'a [[f64; 3]],
 }
 
 impl Next<'_> {
-    /// A certified mesh from further fillings, or from the construction.
-    fn valid<'c>(
+    /// A certified mesh from further fillings.
+    pub fn more_fillings<'c>(
         &self,
         limited: &dyn Fn() -> Context<'c>,
         ctx: &Context<'_>,
         tried: &mut Vec<String>,
     ) -> Result<Option<(Filled, Placed)>, FillError> {
-        if !self.has_best && ctx.stop().is_none() {
-            let more = FillOptions { count: MORE_FILLINGS, ..self.options.clone() };
-            let found = fill(self.problem, &more, ctx)?;
-            tried.push(format!("{} fillings", found.meshes.len()));
-            let mut embed = *self.embed;
-            if embed.starts == 0 {
-                embed.starts = STARTS;
-            }
-            let best = place_best(&found.meshes, self.problem, self.boundary, &embed, &limited());
-            if let Some((filled, placed)) = best.filter(|(_, placed)| placed.is_certified()) {
-                return Ok(Some((filled, placed)));
-            }
-        }
         if ctx.stop().is_some() {
             return Ok(None);
         }
-        let constructed = FillOptions { strategy: Strategy::Construct, count: 1, ..self.options.clone() };
-        let made = fill(self.problem, &constructed, ctx)?;
-        tried.extend(made.tried);
-        let Some(mut filled) = made.meshes.into_iter().next() else { return Ok(None) };
-        let placed = place(&mut filled, self.problem, self.boundary, Some(self.embed), &limited());
-        Ok(Some((filled, placed)).filter(|(_, placed)| placed.is_certified()))
+        let more = FillOptions { count: MORE_FILLINGS, ..self.options.clone() };
+        let mut found = FillResult { meshes: Vec::new(), stop: StopReason::Finished, tried: Vec::new() };
+        search(&self.problem.surface, &more, ctx, &mut found)?;
+        tried.push(format!("{} fillings", found.meshes.len()));
+        let mut embed = *self.embed;
+        if embed.starts == 0 {
+            embed.starts = STARTS;
+        }
+        let best = place_best(&found.meshes, self.problem, self.boundary, &embed, &limited());
+        Ok(best.filter(|(_, placed)| placed.is_certified()))
     }
 }
 
 /// Why no mesh of the surface has det J > 0, whatever its connectivity; `None` if no such reason is seen.
-fn no_room(surface: &QuadSurface, points: &[[f64; 3]]) -> Option<String> {
+pub(crate) fn no_room(surface: &QuadSurface, points: &[[f64; 3]]) -> Option<String> {
     // Seen from one vertex, in halves so that nothing overflows, and about as large as one.
     let origin = points[surface.quads().first()?[0].index()];
     let seen = |v: VertexId| [0, 1, 2].map(|k: usize| 0.5 * points[v.index()][k] - 0.5 * origin[k]);
@@ -187,6 +173,7 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fill::Route;
 
     fn placing() -> PlaceOptions {
         PlaceOptions { embed: Some(hexfill_embed::Options::default()), ..PlaceOptions::default() }

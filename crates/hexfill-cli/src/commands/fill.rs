@@ -40,6 +40,9 @@ pub struct FillArgs {
     /// How to fill.
     #[arg(long, value_enum, default_value = "auto")]
     strategy: StrategyArg,
+    /// Which mesh to prefer among those that are certified with a worst scaled Jacobian of at least 0.2.
+    #[arg(long, value_enum, default_value = "balance")]
+    prefer: PreferArg,
     /// Accept only meshes of at most this many hexes.
     #[arg(long, value_name = "N")]
     max_hexes: Option<u32>,
@@ -98,12 +101,24 @@ pub struct FillArgs {
 
 #[derive(Clone, Copy, PartialEq, Eq, Debug, clap::ValueEnum)]
 enum StrategyArg {
-    /// Atlas, then inward flips; what they do not fill is constructed.
+    /// Atlas, shelling, inward flips, construction: the best mesh of them (see --prefer).
     Auto,
+    /// Shelling only: the surface is swept inward by its own dual curves.
+    Shell,
     /// Atlas, inward flips, then growth towards the surface until --time-limit.
     Atlas,
     /// Construction only.
     Construct,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, Debug, clap::ValueEnum)]
+enum PreferArg {
+    /// Fewest hexes per unit of worst scaled Jacobian.
+    Balance,
+    /// Fewest hexes.
+    Hexes,
+    /// Largest worst scaled Jacobian.
+    Quality,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, Debug, clap::ValueEnum)]
@@ -163,6 +178,7 @@ pub fn run(args: &FillArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Res
     let options = FillOptions {
         strategy: match args.strategy {
             StrategyArg::Auto => Strategy::Auto,
+            StrategyArg::Shell => Strategy::Shell,
             StrategyArg::Atlas => Strategy::Atlas,
             StrategyArg::Construct => Strategy::Construct,
         },
@@ -181,6 +197,12 @@ pub fn run(args: &FillArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Res
             None => CellChoice::Embeddable,
         },
         simplify: simplification(args, ctx),
+        shell: hexfill::ShellOptions::default(),
+        prefer: match args.prefer {
+            PreferArg::Balance => hexfill::Prefer::Balance,
+            PreferArg::Hexes => hexfill::Prefer::Hexes,
+            PreferArg::Quality => hexfill::Prefer::Quality,
+        },
         growth: GrowOptions { cap: args.cap, width: args.width.max(1) },
     };
     let mut how = PlaceOptions::default();
@@ -307,7 +329,7 @@ fn write_mesh(
         mesh: &filled.mesh,
         scaled_jacobians: (!args.no_embed).then(|| placed.scaled_jacobians()),
         facts: vec![
-            ("made by".to_owned(), route_words(filled.route).to_owned()),
+            ("made by".to_owned(), filled.route.words().to_owned()),
             ("geometry".to_owned(), placed.report().to_string()),
         ],
     };
@@ -337,7 +359,7 @@ fn say(output: &Output, args: &FillArgs, console: &Console) {
             r.hexes_per_quad,
             r.interior_vertices,
             r.sheets.map_or(String::new(), |n| format!(", {n} sheets")),
-            route_words(r.route),
+            r.route.words(),
         ));
         console.say("connectivity: judged proper, boundary = surface (L1-L3)");
         match &mesh.geometry {
@@ -366,15 +388,6 @@ fn say(output: &Output, args: &FillArgs, console: &Console) {
         console.say(format!("{} of {} meshes asked for were found", output.meshes.len(), args.count));
     }
     console.say(format!("{:.2} s", output.seconds));
-}
-
-fn route_words(route: hexfill::Route) -> &'static str {
-    match route {
-        hexfill::Route::Atlas => "atlas look-up",
-        hexfill::Route::InwardFlips => "inward flips and atlas",
-        hexfill::Route::Growth => "growth towards the surface",
-        _ => "construction",
-    }
 }
 
 /// `mesh.vtk` and 2 -> `mesh-2.vtk`; `mesh.vtk.gz` -> `mesh-2.vtk.gz`.
