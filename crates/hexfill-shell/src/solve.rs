@@ -37,6 +37,8 @@ impl Sweep {
 
 /// How much costs vary from restart to restart.
 const NOISE: f32 = 1.0;
+/// What a fine hex costs besides, in turn: where creases do not decide, smaller sides go first.
+const PER_HEX: [f32; 4] = [0.0, 0.02, 0.1, 0.5];
 /// Sets of two rings are looked at only among so many rings.
 const MOST_PAIRED: usize = 160;
 /// Edges that want fewer hexes than this bound the patches that may be a side.
@@ -54,13 +56,20 @@ pub(crate) fn solve(coarse: &Coarse, pillows: u32, restarts: u64, ctx: &Context<
         let ((qa, ca, ha, ra), (qb, cb, hb, rb)) = (a.rank(), b.rank());
         qa.cmp(&qb).then(ca.total_cmp(&cb)).then(ha.cmp(&hb)).then(ra.cmp(&rb))
     });
-    sweeps.dedup_by(|b, a| a.cost == b.cost && a.fine_hexes == b.fine_hexes && a.void.quads.len() == b.void.quads.len());
+    // Of the complete ones only those that no other beats in both cost and hexes: costs ascend, hexes must fall.
+    let mut fewest = u64::MAX;
+    sweeps.retain(|s| {
+        let keep = !s.is_complete() || s.fine_hexes < fewest;
+        fewest = fewest.min(s.fine_hexes);
+        keep
+    });
     sweeps
 }
 
 /// One sweep; `None` if it was stopped.
 fn sweep(start: &Void, pillows: u32, restart: u64, ctx: &Context<'_>) -> Option<Sweep> {
     let mut random = Random::new(ctx.seed.wrapping_mul(0x1_0001).wrapping_add(restart));
+    let per_hex = PER_HEX[(restart % PER_HEX.len() as u64) as usize];
     let base: u64 = (0..start.quads.len()).map(|q| area(start, q as u32)).sum();
     let mut sweep =
         Sweep { void: start.clone(), cost: 0.0, fine_hexes: u64::from(pillows) * base, pillows, restart };
@@ -72,8 +81,9 @@ fn sweep(start: &Void, pillows: u32, restart: u64, ctx: &Context<'_>) -> Option<
         // The plain sweep breaks ties by order; noise makes the order of equals random as well.
         let mut order: Vec<(f32, u32)> = (0..moves.len() as u32)
             .map(|i| {
+                let the = &moves[i as usize];
                 let noise = if restart == 0 { 0.0 } else { NOISE * random.unit() as f32 };
-                ((moves[i as usize].cost + 1e-3 * noise) * (1.0 + noise), i)
+                ((the.cost + per_hex * the.fine_hexes as f32 + 1e-3 * noise) * (1.0 + noise), i)
             })
             .collect();
         order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
