@@ -57,7 +57,7 @@ impl Console {
     pub fn say(&self, text: impl AsRef<str>) {
         if !self.quiet {
             self.finish_progress();
-            eprintln!("{}", text.as_ref());
+            tell(text.as_ref());
         }
     }
 
@@ -69,7 +69,7 @@ impl Console {
     /// An error with its causes, on stderr, in one message.
     pub fn error(&self, error: &anyhow::Error) {
         self.finish_progress();
-        eprintln!("{} {}", self.paint("error:", "1;31"), message(error));
+        tell(&format!("{} {}", self.paint("error:", "1;31"), message(error)));
     }
 
     /// The error that ends the command: on stderr, and as JSON on stdout where JSON was asked for.
@@ -132,7 +132,7 @@ impl Console {
         } else if state.last_line.elapsed() >= LINE_EVERY {
             state.last_line = Instant::now();
             let of = p.total.map_or(String::new(), |t| format!(" of {t}"));
-            eprintln!("[{:6.1}s] {} {}{of}: {}", elapsed.as_secs_f64(), p.stage, p.done, p.message);
+            tell(&format!("[{:6.1}s] {} {}{of}: {}", elapsed.as_secs_f64(), p.stage, p.done, p.message));
         }
     }
 
@@ -143,6 +143,11 @@ impl Console {
             bar.finish_and_clear();
         }
     }
+}
+
+/// A line on stderr. Work goes on if stderr is closed or full: its result matters, and the exit code is still read.
+pub fn tell(text: &str) {
+    let _ = writeln!(std::io::stderr(), "{text}");
 }
 
 /// An error and its causes as one line; causes that a message already contains are not said again.

@@ -53,7 +53,7 @@ pub fn install_signal_handler() -> &'static AtomicBool {
         if CANCEL.swap(true, Ordering::Relaxed) {
             std::process::exit(Exit::Stopped as i32);
         }
-        eprintln!("hexfill: stopping; once more to quit at once");
+        crate::console::tell("hexfill: stopping; once more to quit at once");
     });
     // Without a handler the signals keep their default meaning: the process ends.
     drop(installed);

@@ -7,6 +7,7 @@ mod commands;
 mod console;
 mod exit;
 mod files;
+mod panics;
 
 use clap::{Args, Parser, Subcommand};
 use console::Console;
@@ -89,6 +90,10 @@ enum Command {
 }
 
 fn main() -> ExitCode {
+    panics::guard(run)
+}
+
+fn run() -> ExitCode {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(error) => {
@@ -105,8 +110,13 @@ fn main() -> ExitCode {
             console.error(&anyhow::anyhow!("--threads 0: give at least 1"));
             return Exit::Usage.into();
         }
-        rayon::ThreadPoolBuilder::new().num_threads(threads).build_global().expect("the pool is built once");
+        // More threads than the system gives is the user's number, no defect.
+        if let Err(error) = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global() {
+            console.error(&anyhow::anyhow!("--threads {threads}: {error}"));
+            return Exit::Usage.into();
+        }
     }
+    panics::provoked_by_test();
     let progress = |p: &hexfill::Progress| console.progress(p);
     let mut ctx = Context {
         cancel: Some(cancel),

@@ -170,7 +170,7 @@ impl Cavity {
         let pairs = self.surface_pairs();
         for (a, row) in pairs.iter().enumerate().take(self.n_vertices()) {
             assert_eq!(self.blocked[a] & row, 0, "blocked pair of v{a} lies on the surface");
-            assert_eq!(self.blocked[a] >> self.n_vertices, 0);
+            assert_eq!(self.blocked[a].checked_shr(u32::from(self.n_vertices)).unwrap_or(0), 0);
             for b in 0..self.n_vertices() {
                 assert_eq!(self.blocked[a] >> b & 1, self.blocked[b] >> a & 1);
             }

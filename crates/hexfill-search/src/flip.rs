@@ -276,15 +276,15 @@ pub fn apply(cavity: &Cavity, placement: &Placement) -> (Cavity, [u8; MAX_VERTIC
     for &k in &table.buried_corners {
         buried |= 1 << placement.corners[k];
     }
-    let total = cavity.n_vertices + table.new_corners.len() as u8;
+    // A new vertex of a full cavity has no bit in `buried` (a corner flip of 64 vertices brings one before it buries one),
+    // and needs none: no flip buries what it brings.
+    let brought = cavity.n_vertices..cavity.n_vertices + table.new_corners.len() as u8;
     let mut before = [0u8; MAX_VERTICES];
     let mut renamed = [NEW; MAX_VERTICES + 4];
-    for v in 0..total {
-        if buried >> v & 1 == 0 {
-            renamed[usize::from(v)] = after.n_vertices;
-            before[usize::from(after.n_vertices)] = v;
-            after.n_vertices += 1;
-        }
+    for v in (0..cavity.n_vertices).filter(|&v| buried >> v & 1 == 0).chain(brought) {
+        renamed[usize::from(v)] = after.n_vertices;
+        before[usize::from(after.n_vertices)] = v;
+        after.n_vertices += 1;
     }
     // Quads: the survivors in order, then the open facets.
     let mut quad_of = [NEW; crate::cavity::MAX_QUADS];
