@@ -1,2 +1,12 @@
 //! Shelling: closed quad surfaces of any size swept inward by their own dual curves, until nothing is left to fill.
 
+
+mod front;
+mod lens;
+mod pairs;
+mod sweep;
+mod zip;
+
+pub use front::{Front, FrontError, Mark};
+pub use sweep::{SweepOptions, Swept, sweep, sweep_front};
+pub use zip::Refused;
