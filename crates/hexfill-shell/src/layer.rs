@@ -317,7 +317,7 @@ fn close(void: &mut Void, the: &Move) -> Option<()> {
         let hex = [at[&a], at[&b], at[&c], at[&d], a, b, c, d];
         for v in [a, b, c, d] {
             // A vertical edge that is no rung is new.
-            let is_new = !rim.contains_key(&v) && void.pairs.get(v, at[&v]).is_some_and(|k| k != crate::pairs::Kind::Edge);
+            let is_new = !rim.contains_key(&v) && void.pairs.get(v, at[&v]).is_some_and(|k| k != crate::kinds::Kind::Edge);
             if is_new || v == at[&v] {
                 return None;
             }

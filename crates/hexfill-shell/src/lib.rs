@@ -1,15 +1,24 @@
 //! Shelling: closed quad surfaces of any size swept inward by their own dual curves, until nothing is left to fill.
 //!
-//! `angles` what every edge wants -> `compress` parallel chords become one -> `solve` layers and closings (`layer`) on the
-//! void (`void`, `pairs`) -> `lift` back to the fine surface.
+//! Two engines. By layers: `angles` what every edge wants -> `compress` parallel chords become one -> `solve` layers and
+//! closings (`layer`) on the void (`void`, `kinds`) -> `lift` back to the fine surface. By flips: `front` (`pairs`) what is
+//! left -> `lens` the smallest lens of its dual -> `zip` flips that empty it -> `sweep` until nothing is left.
 
 mod angles;
 mod compress;
+mod front;
+mod kinds;
 mod layer;
+mod lens;
 mod lift;
 mod pairs;
 mod shell;
 mod solve;
+mod sweep;
 mod void;
+mod zip;
 
+pub use front::{Front, FrontError, Mark};
 pub use shell::{ShellOptions, Shelled, Shelling, shell};
+pub use sweep::{SweepOptions, Swept, sweep, sweep_front};
+pub use zip::Refused;

@@ -5,7 +5,7 @@
 //! edge. Darts are `4 * quad + side`.
 
 use crate::compress::Coarse;
-use crate::pairs::PairTable;
+use crate::kinds::PairKinds;
 use rustc_hash::FxHashMap;
 
 /// How much less than its angle says an edge inside a pillow differs from flat: the pillow's hexes take up the rest.
@@ -25,7 +25,7 @@ pub(crate) struct Void {
     /// Vertices below this lie on the surface.
     pub n_surface: u32,
     pub hexes: Vec<[u32; 8]>,
-    pub pairs: PairTable,
+    pub pairs: PairKinds,
 }
 
 #[inline]
@@ -48,7 +48,7 @@ impl Void {
     pub fn new(coarse: &Coarse) -> Self {
         let surface = &coarse.surface;
         let quads: Vec<[u32; 4]> = surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
-        let mut pairs = PairTable::default();
+        let mut pairs = PairKinds::default();
         for &quad in &quads {
             pairs.put_quad(quad);
         }

@@ -1,0 +1,283 @@
+//! Sweep: a surface is filled from its front inward by emptying the smallest lens of the front's dual, again and again.
+//!
+//! A lens with k vertices inside is emptied by k - 1 flips of triangles at its arcs, the last of which zips two quads away. All flips of a
+//! lens are one transaction: it ends with fewer quads or is taken back, so the sweep ends after at most half as many lenses as there are quads.
+//! On spheres whose chords are simple this closes the void (Chang, Erickson, "Untangling planar curves", 2017); what stays elsewhere are chords
+//! that cross themselves, or handles (see `plug`).
+//!
+//! Lenses are kept in a heap, one for each corner. A change of the front can make new ones only at corners whose arcs run through a changed quad:
+//! those are found by following the chords back. A lens that changed otherwise is noticed when its turn comes.
+
+use crate::front::{Front, FrontError, Mark, NONE, next, opposite};
+use crate::lens::{LensFinder, Stamps};
+use hexfill_mesh::{Context, QuadSurface, Random, StopReason};
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+/// How a surface is swept.
+#[derive(Clone, Debug, Default)]
+#[non_exhaustive]
+pub struct SweepOptions {
+    /// Whole layers of one hex a quad put first; after the first, everything on the front is interior and free to merge.
+    pub pillows: u32,
+    /// Breaks ties among lenses of one size and among triangles of one lens; 0: by index.
+    pub seed: u64,
+    /// Most vertices a lens may have inside; `None`: any number.
+    pub largest_lens: Option<u32>,
+}
+
+/// What a sweep made.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Swept {
+    /// Number of vertices: those of the surface first, then the new ones.
+    pub n_vertices: u32,
+    /// The hexes, corners in VTK_HEXAHEDRON order, positively oriented with respect to the outward surface.
+    pub hexes: Vec<[u32; 8]>,
+    /// The quads still to fill, oriented as the surface (outward of what is left); empty when complete.
+    pub front: Vec<[u32; 4]>,
+    /// Why the sweep stopped early, if it did.
+    pub stopped: Option<StopReason>,
+}
+
+/// Fills `surface` from its front inward. Each of its components must bound a ball (or a handlebody) of its own.
+///
+/// # Errors
+/// [`FrontError::Improper`] if quads of the surface meet improperly, so that no proper filling exists.
+pub fn sweep(surface: &QuadSurface, options: &SweepOptions, ctx: &Context<'_>) -> Result<Swept, FrontError> {
+    let mut front = Front::new(surface)?;
+    for _ in 0..options.pillows {
+        front = front.pillowed()?;
+    }
+    let stopped = sweep_front(&mut front, options, ctx);
+    Ok(front.finish(stopped))
+}
+
+/// Empties lenses of a front until none can be emptied; `None`, or why it stopped early.
+pub fn sweep_front(front: &mut Front, options: &SweepOptions, ctx: &Context<'_>) -> Option<StopReason> {
+    Sweeper::new(front, options).run(ctx)
+}
+
+impl Front {
+    /// The state after one more whole layer: a hex on every front quad, its other end on a copy of the front.
+    ///
+    /// # Errors
+    /// [`FrontError::Improper`]; not for a state that is proper.
+    pub fn pillowed(&self) -> Result<Self, FrontError> {
+        let mut copy = vec![NONE; self.n_vertices() as usize];
+        let mut n_vertices = self.n_vertices();
+        let (mut hexes, mut quads) = (self.hexes().to_vec(), self.quads());
+        for quad in &mut quads {
+            let inner = quad.map(|v| {
+                let slot = &mut copy[v as usize];
+                if *slot == NONE {
+                    *slot = n_vertices;
+                    n_vertices += 1;
+                }
+                *slot
+            });
+            let ([a, b, c, d], [e, f, g, h]) = (inner, *quad);
+            hexes.push([a, b, c, d, e, f, g, h]);
+            *quad = inner;
+        }
+        Self::try_from_parts(n_vertices, self.surface(), &hexes, &quads)
+    }
+
+    /// The result, with the vertices numbered without gaps: those of the surface keep their ids.
+    fn finish(&self, stopped: Option<StopReason>) -> Swept {
+        let (mut hexes, mut front) = (self.hexes().to_vec(), self.quads());
+        let mut used = vec![false; self.n_vertices() as usize];
+        let first_new = self.n_surface_vertices();
+        used[..first_new as usize].fill(true);
+        hexes.iter().flatten().for_each(|&v| used[v as usize] = true);
+        let mut n_vertices = 0;
+        let name: Vec<u32> = used
+            .iter()
+            .map(|&used| {
+                n_vertices += u32::from(used);
+                n_vertices.wrapping_sub(1)
+            })
+            .collect();
+        hexes.iter_mut().flatten().for_each(|v| *v = name[*v as usize]);
+        front.iter_mut().flatten().for_each(|v| *v = name[*v as usize]);
+        Swept { n_vertices, hexes, front, stopped }
+    }
+}
+
+/// A lens in the heap: size, noise, corner, and the corner's version when it was looked at.
+type Entry = (u32, u32, u32, u32);
+
+/// The state of a sweep.
+struct Sweeper<'a> {
+    front: &'a mut Front,
+    finder: LensFinder,
+    heap: BinaryHeap<Reverse<Entry>>,
+    /// Per dart: how often its corner was looked at; older entries of the heap are void.
+    version: Vec<u32>,
+    /// Darts whose corner was looked at in this round.
+    looked: Stamps,
+    /// Vertices of the lens that is being emptied.
+    inside: Stamps,
+    /// Lenses up to this size are known.
+    limit: u32,
+    largest: u32,
+    random: Option<Random>,
+}
+
+impl<'a> Sweeper<'a> {
+    fn new(front: &'a mut Front, options: &SweepOptions) -> Self {
+        let n_darts = 4 * front.n_slots() as usize;
+        let n_vertices = front.n_quads() as u32 + 2;
+        Self {
+            front,
+            finder: LensFinder::default(),
+            heap: BinaryHeap::new(),
+            version: vec![0; n_darts],
+            looked: Stamps::default(),
+            inside: Stamps::default(),
+            limit: 0,
+            largest: options.largest_lens.unwrap_or(u32::MAX).min(n_vertices),
+            random: (options.seed != 0).then(|| Random::new(options.seed)),
+        }
+    }
+
+    fn run(mut self, ctx: &Context<'_>) -> Option<StopReason> {
+        self.front.commit();
+        let total = self.front.n_quads() as u64;
+        while self.front.n_quads() > 0 {
+            if let Some(reason) = ctx.stop() {
+                return Some(reason);
+            }
+            let Some(Reverse((size, _, corner, version))) = self.heap.pop() else {
+                if self.limit >= self.largest {
+                    return None;
+                }
+                self.limit = (2 * self.limit).max(4).min(self.largest);
+                self.look_everywhere();
+                continue;
+            };
+            if self.version[corner as usize] != version || !self.front.is_quad(corner / 4) {
+                continue;
+            }
+            let Some(lens) = self.finder.find(self.front, corner, self.limit as usize) else { continue };
+            if lens.len() as u32 != size {
+                let size = lens.len() as u32;
+                self.push(size, corner);
+                continue;
+            }
+            let lens = lens.to_vec();
+            let mark = self.front.mark();
+            if self.empty(lens) {
+                self.look_near(mark);
+                self.front.commit();
+                let (left, hexes) = (self.front.n_quads() as u64, self.front.hexes().len());
+                ctx.report("shelling", total - left, Some(total), || format!("{left} quads left, {hexes} hexes"));
+            }
+        }
+        None
+    }
+
+    /// Empties a lens by flips at its arcs. The front is unchanged if that does not end with fewer quads.
+    fn empty(&mut self, mut lens: Vec<u32>) -> bool {
+        let n_quads = self.front.n_quads();
+        let mark = self.front.mark();
+        self.inside.clear(self.front.n_vertices() as usize + lens.len() + 1);
+        lens.iter().for_each(|&v| self.inside.set(v, 0));
+        loop {
+            let at = (0..lens.len()).find(|&i| self.is_at_arc(lens[i]) && self.front.flip(lens[i]).is_ok());
+            let Some(at) = at else {
+                self.front.take_back(mark);
+                return false;
+            };
+            if self.front.n_quads() < n_quads {
+                return true;
+            }
+            let v = lens.swap_remove(at);
+            // Not inside any more.
+            self.inside.unset(v);
+        }
+    }
+
+    /// Whether a vertex inside the lens has degree 3 and a neighbour outside: its triangle lies at an arc.
+    fn is_at_arc(&self, v: u32) -> bool {
+        self.front.degree(v) == 3
+            && self.front.round_vertex(self.front.dart_of(v)).any(|d| !self.inside.is_set(self.front.target(d)))
+    }
+
+    fn push(&mut self, size: u32, corner: u32) {
+        let noise = self.random.as_mut().map_or(0, |r| r.next_u64() as u32);
+        self.heap.push(Reverse((size, noise, corner, self.version[corner as usize])));
+    }
+
+    /// Looks at one corner, once a round.
+    fn look(&mut self, corner: u32) {
+        if self.looked.is_set(corner) {
+            return;
+        }
+        self.looked.set(corner, 0);
+        self.version[corner as usize] += 1;
+        if let Some(lens) = self.finder.find(self.front, corner, self.limit as usize) {
+            let size = lens.len() as u32;
+            self.push(size, corner);
+        }
+    }
+
+    fn look_everywhere(&mut self) {
+        self.looked.clear(self.version.len());
+        for q in 0..self.front.n_slots() {
+            if self.front.is_quad(q) {
+                (4 * q..4 * q + 4).for_each(|d| self.look(d));
+            }
+        }
+    }
+
+    /// Looks at all corners whose arcs meet a quad that changed since `mark`.
+    fn look_near(&mut self, mark: Mark) {
+        self.looked.clear(self.version.len());
+        for q in self.front.changed_slots(mark) {
+            if !self.front.is_quad(q) {
+                continue;
+            }
+            for d in 4 * q..4 * q + 4 {
+                self.look(d);
+                // Away from q across d; the arcs that come back this way leave each quad across the dart they entered by.
+                let mut at = self.front.twin(d);
+                for _ in 0..self.limit {
+                    if at / 4 == q {
+                        break;
+                    }
+                    self.look(at);
+                    self.look(next(at));
+                    at = self.front.twin(opposite(at));
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hexfill_check::{Judged, Level, judge};
+    use hexfill_mesh::generate::{random_sphere, voxel_surface};
+
+    /// Judges a complete filling with levels 1 to 3; the number of hexes.
+    fn judged(surface: &QuadSurface, swept: &Swept) -> usize {
+        assert!(swept.front.is_empty());
+        let quads: Vec<[u32; 4]> = surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
+        let input = Judged::connectivity(swept.n_vertices as usize, &swept.hexes).with_surface(&quads);
+        let options = hexfill_check::Options::default().up_to(Level::L3);
+        let report = judge(&input, &options, &Context::default());
+        assert!(report.passed(Level::L3), "{:?}", report.failures);
+        swept.hexes.len()
+    }
+
+    #[test]
+    fn boxes_are_their_voxels() {
+        for n in 2..=6 {
+            let surface = voxel_surface([n, n, n], |_| true).unwrap();
+            let swept = sweep(&surface, &SweepOptions::default(), &Context::default()).unwrap();
+            assert_eq!(judged(&surface, &swept), n * n * n);
+        }
+    }
+}

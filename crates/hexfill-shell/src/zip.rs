@@ -1,0 +1,291 @@
+//! Flips with zips: one hex glued on the three front quads round a vertex of degree 3.
+//!
+//! The hex brings one new vertex w, and its three other facets take the place of the quads: in the dual a triangle is pushed over. Where that
+//! leaves a front vertex of degree 2, its two quads `(u, p, s, q)` and `(u, q, t, p)` lie on each other: *zip* identifies s with t, the two quads
+//! are gone, and so on until no degree 2 is left. 4->2, 5->1 and closing the cube are the cases with one, two and three zips; a flip whose
+//! neighbours have *different* tops becomes possible by merging the tops.
+//!
+//! Taken back as a whole are flips where a zip would leave degree 1 (a chord with a loop of one crossing), merge two vertices of the surface, or
+//! split the void, and those that break rule R2 (the pair table, after the last zip) or leave two edges between the same two vertices.
+//! The last is counted: merging s and t makes one edge pair of each common neighbour, and only gluing the two front edges makes it one edge.
+
+use crate::front::{Front, NONE, next, opposite, prev};
+
+/// Why a flip was not made; the front is as before.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[non_exhaustive]
+pub enum Refused {
+    /// The vertex has not three quads.
+    NotDegreeThree,
+    /// A zip would leave a vertex of degree 1.
+    Loop,
+    /// A zip would merge two vertices of the surface.
+    Fixed,
+    /// A zip would split the void in two.
+    Split,
+    /// Two edges would join the same two vertices.
+    DoubleEdge,
+    /// Two cells would share more than a vertex, an edge or a quad of both.
+    Improper,
+}
+
+/// What the zips of one flip have to remember until the last of them.
+#[derive(Default)]
+struct Pending {
+    /// Vertices whose degree fell.
+    queue: Vec<u32>,
+    /// Hexes whose pairs are out of the table.
+    hexes: Vec<u32>,
+    /// One entry for each front edge too many between two vertices.
+    double: Vec<[u32; 2]>,
+}
+
+impl Pending {
+    fn rename(&mut self, from: u32, to: u32) {
+        for v in self.queue.iter_mut().chain(self.double.iter_mut().flatten()) {
+            if *v == from {
+                *v = to;
+            }
+        }
+    }
+}
+
+impl Front {
+    /// Glues a hex on the three quads round `v` and zips. The front is unchanged if the flip is refused.
+    ///
+    /// # Errors
+    /// [`Refused`].
+    pub fn flip(&mut self, v: u32) -> Result<(), Refused> {
+        if v >= self.n_vertices() || self.degree(v) != 3 {
+            return Err(Refused::NotDegreeThree);
+        }
+        let mark = self.mark();
+        let result = self.flip_and_zip(v);
+        if result.is_err() {
+            self.take_back(mark);
+        }
+        result
+    }
+
+    fn flip_and_zip(&mut self, v: u32) -> Result<(), Refused> {
+        let mut pending = Pending::default();
+        self.push_over(v, &mut pending);
+        while let Some(u) = pending.queue.pop() {
+            match self.degree(u) {
+                1 => return Err(Refused::Loop),
+                2 => self.zip(u, &mut pending)?,
+                _ => {}
+            }
+        }
+        if !pending.double.is_empty() {
+            return Err(Refused::DoubleEdge);
+        }
+        pending.hexes.sort_unstable();
+        pending.hexes.dedup();
+        if pending.hexes.into_iter().all(|h| self.add_pairs(h)) { Ok(()) } else { Err(Refused::Improper) }
+    }
+
+    /// The hex and its three facets, before any zip.
+    ///
+    /// Round v, counter-clockwise: the quads (v, a, x, b), (v, b, y, c), (v, c, z, a); outer cycle a x b y c z. The quads
+    /// (w, x, b, y), (w, y, c, z), (w, z, a, x) take their slots so that one outer dart of each keeps its place.
+    fn push_over(&mut self, v: u32, pending: &mut Pending) {
+        let first = self.dart_of(v);
+        let second = self.twin(prev(first));
+        let third = self.twin(prev(second));
+        let darts = [first, second, third];
+        let [a, b, c] = darts.map(|d| self.target(d));
+        let [x, y, z] = darts.map(|d| self.target(next(d)));
+        let outer = darts.map(|d| self.twin(next(d)));
+        let w = self.push_vertex();
+        pending.hexes.push(self.push_hex([v, b, x, a, c, y, w, z]));
+        // Slot of (v, a, x, b): v->a, a->x, x->b, b->v become y->w, w->x, x->b, b->y.
+        let new = [[y, w, x, b], [z, w, y, c], [x, w, z, a]];
+        for (d, [p, w, q, r]) in darts.into_iter().zip(new) {
+            for (dart, vertex) in [(d, p), (next(d), w), (opposite(d), q), (prev(d), r)] {
+                if self.origin(dart) != vertex {
+                    self.set_origin(dart, vertex);
+                }
+            }
+        }
+        for i in 0..3 {
+            // b->y of the first quad was b->y of the second; w->x of the first meets x->w of the third.
+            let after = (i + 1) % 3;
+            self.glue(prev(darts[i]), outer[after]);
+            self.glue(darts[i], next(darts[after]));
+        }
+        self.set_degree(v, 0);
+        self.set_dart_of(v, NONE);
+        self.set_degree(w, 3);
+        self.set_dart_of(w, next(first));
+        for (i, (near, far)) in [(b, x), (c, y), (a, z)].into_iter().enumerate() {
+            self.set_degree(near, self.degree(near) - 1);
+            self.set_dart_of(near, prev(darts[i]));
+            self.set_degree(far, self.degree(far) + 1);
+            self.set_dart_of(far, opposite(darts[i]));
+        }
+        pending.queue.extend([a, b, c]);
+    }
+
+    /// Zips the two quads at `u`, of degree 2: see the page.
+    fn zip(&mut self, u: u32, pending: &mut Pending) -> Result<(), Refused> {
+        let one = self.dart_of(u);
+        let two = self.twin(prev(one));
+        if one / 4 == two / 4 {
+            return Err(Refused::Loop);
+        }
+        let (p, q) = (self.target(one), self.target(two));
+        let (s, t) = (self.target(next(one)), self.target(next(two)));
+        // Darts across the outer edges, seen from outside the two quads: s->p and p->t, q->s and t->q.
+        let [s_p, q_s] = [next(one), opposite(one)].map(|d| self.twin(d));
+        let [t_q, p_t] = [next(two), opposite(two)].map(|d| self.twin(d));
+        // Is p, or q, met by these two quads only?
+        let (p_closed, q_closed) = (s_p == opposite(two), q_s == next(two));
+        let kept = if s == t {
+            if !p_closed && !q_closed {
+                return Err(Refused::Split);
+            }
+            self.set_degree(s, self.degree(s) - 2);
+            s
+        } else {
+            let kept = self.merge(s, t, pending)?;
+            let degree = self.degree(s) + self.degree(t) - 2;
+            self.set_degree(s, 0);
+            self.set_degree(t, 0);
+            self.set_degree(kept, degree);
+            kept
+        };
+        self.remove_quad(one / 4);
+        self.remove_quad(two / 4);
+        self.set_degree(u, 0);
+        self.set_dart_of(u, NONE);
+        let mut dart_of_kept = NONE;
+        for (end, closed, from_end, to_end) in [(p, p_closed, p_t, s_p), (q, q_closed, q_s, t_q)] {
+            self.set_degree(end, self.degree(end) - 2);
+            if closed {
+                self.set_dart_of(end, NONE);
+                continue;
+            }
+            // Two front edges become one.
+            self.glue(from_end, to_end);
+            let edge = [kept.min(end), kept.max(end)];
+            match pending.double.iter().position(|&e| e == edge) {
+                Some(i) => {
+                    pending.double.swap_remove(i);
+                }
+                None => return Err(Refused::DoubleEdge),
+            }
+            self.set_dart_of(end, from_end);
+            dart_of_kept = to_end;
+            pending.queue.push(end);
+        }
+        self.set_dart_of(kept, dart_of_kept);
+        pending.queue.push(kept);
+        Ok(())
+    }
+
+    /// Makes one vertex of `s` and `t` in hexes and on the front (degrees and darts are left to the caller); the one kept.
+    fn merge(&mut self, s: u32, t: u32, pending: &mut Pending) -> Result<u32, Refused> {
+        let (kept, gone) = match (self.is_fixed(s), self.is_fixed(t)) {
+            (true, true) => return Err(Refused::Fixed),
+            (true, false) => (s, t),
+            (false, true) => (t, s),
+            // The new vertex, or that with fewer hexes, is renamed.
+            (false, false) => if self.star(s).len() < self.star(t).len() { (t, s) } else { (s, t) },
+        };
+        let near = self.neighbours(kept);
+        let common = self.neighbours(gone).into_iter().filter(|v| near.binary_search(v).is_ok());
+        let common: Vec<u32> = common.collect();
+        for i in 0..self.star(gone).len() {
+            let h = self.star(gone)[i];
+            if !pending.hexes.contains(&h) {
+                self.remove_pairs(h);
+                pending.hexes.push(h);
+            }
+        }
+        let round: Vec<u32> = self.round_vertex(self.dart_of(gone)).collect();
+        for d in round {
+            self.set_origin(d, kept);
+        }
+        self.rename(gone, kept);
+        self.set_dart_of(gone, NONE);
+        pending.rename(gone, kept);
+        for pair in &mut pending.double {
+            pair.sort_unstable();
+        }
+        pending.double.extend(common.into_iter().map(|v| [kept.min(v), kept.max(v)]));
+        Ok(kept)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hexfill_mesh::QuadSurface;
+    use hexfill_mesh::generate::{cube_surface, random_sphere, voxel_surface};
+
+    #[test]
+    fn the_cube_closes_with_three_zips() {
+        let mut front = Front::new(&cube_surface()).unwrap();
+        front.debug_check();
+        let before = front.clone();
+        assert_eq!(front.flip(0), Ok(()));
+        front.debug_check();
+        assert_eq!((front.n_quads(), front.hexes().len()), (0, 1));
+        assert_eq!(front.neighbours(0).len(), 3);
+        front.take_back(crate::front::Front::new(&cube_surface()).unwrap().mark());
+        assert!(front.is_same(&before));
+    }
+
+    #[test]
+    fn a_bar_closes_with_its_voxels() {
+        let mut front = Front::new(&voxel_surface([3, 1, 1], |_| true).unwrap()).unwrap();
+        while let Some(v) = (0..front.n_vertices()).find(|&v| front.degree(v) == 3) {
+            assert_eq!(front.flip(v), Ok(()));
+            front.debug_check();
+        }
+        assert_eq!((front.n_quads(), front.hexes().len()), (0, 3));
+    }
+
+    #[test]
+    fn flips_are_taken_back_exactly() {
+        let mut surfaces: Vec<QuadSurface> = (0..40).map(|i| random_sphere(20 + i as usize, i).unwrap()).collect();
+        surfaces.push(voxel_surface([3, 3, 3], |_| true).unwrap());
+        let mut refusals = std::collections::BTreeSet::new();
+        for surface in surfaces {
+            let Ok(mut front) = Front::new(&surface) else { continue };
+            for round in 0..20 {
+                let before = front.clone();
+                let mark = front.mark();
+                let mut made = Vec::new();
+                for v in 0..front.n_vertices() {
+                    let one = front.clone();
+                    let one_mark = front.mark();
+                    match front.flip((v * 7 + round) % front.n_vertices()) {
+                        Ok(()) => {
+                            front.debug_check();
+                            let after = front.clone();
+                            front.take_back(one_mark);
+                            assert!(front.is_same(&one));
+                            front = after;
+                            made.push(v);
+                        }
+                        Err(why) => {
+                            refusals.insert(format!("{why:?}"));
+                            assert!(front.is_same(&one));
+                        }
+                    }
+                }
+                let after = front.clone();
+                front.take_back(mark);
+                assert!(front.is_same(&before));
+                front = after;
+                if made.is_empty() {
+                    break;
+                }
+            }
+        }
+        println!("{refusals:?}");
+        assert!(refusals.len() >= 4, "{refusals:?}");
+    }
+}
