@@ -89,7 +89,28 @@ pub fn fill_from_atlas(
     options: &FillOptions,
     ctx: &Context<'_>,
 ) -> Option<FillOutcome> {
-    let (cavity, ids) = Cavity::from_surface(surface)?;
+    fill_avoiding(surface, &[], atlas, options, ctx)
+}
+
+/// [`fill_from_atlas`] where some pairs of vertices are joined already by an edge or a diagonal of cells outside the surface, so
+/// that the filling must not join them. Pairs on the surface's own quads, and pairs of other vertices, are passed over.
+pub fn fill_avoiding(
+    surface: &QuadSurface,
+    joined: &[[u32; 2]],
+    atlas: &Atlas,
+    options: &FillOptions,
+    ctx: &Context<'_>,
+) -> Option<FillOutcome> {
+    let (mut cavity, ids) = Cavity::from_surface(surface)?;
+    let pairs = cavity.surface_pairs();
+    for pair in joined {
+        if let [Ok(a), Ok(b)] = pair.map(|v| ids.binary_search(&v))
+            && a != b
+            && pairs[a] >> b & 1 == 0
+        {
+            cavity.block(a as u8, b as u8);
+        }
+    }
     let mut search = Search { atlas, options, trail: Vec::new(), found: Vec::new(), seen: FxHashSet::default() };
     let hole = Hole { cavity: mirror_image(&cavity), ids, n_vertices: surface.n_vertices() as u32, last: None };
     search.close_with_atlas(&hole, 0);

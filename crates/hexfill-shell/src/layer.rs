@@ -292,7 +292,8 @@ fn close(void: &mut Void, the: &Move) -> Option<()> {
             Some(_) => return None,
             None => {}
         }
-        if in_side[(l >> 2) as usize] || in_ring[(l >> 2) as usize] {
+        // Columns join these edges into one sheet, which has one multiplicity.
+        if in_side[(l >> 2) as usize] || in_ring[(l >> 2) as usize] || void.length[r as usize] != void.length[l as usize] {
             return None;
         }
         match at.insert(void.origin(r), void.target(l)) {

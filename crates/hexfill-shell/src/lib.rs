@@ -6,12 +6,14 @@
 
 mod angles;
 mod compress;
+mod deviation;
 mod front;
 mod kinds;
 mod layer;
 mod lens;
 mod lift;
 mod pairs;
+mod residual;
 mod shell;
 mod solve;
 mod sweep;

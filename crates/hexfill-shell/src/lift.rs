@@ -40,8 +40,8 @@ fn pair(a: u32, b: u32) -> [u32; 2] {
     if a < b { [a, b] } else { [b, a] }
 }
 
-/// Per edge of the coarse mesh: into how many it is cut.
-fn segments(coarse: &Coarse, hexes: &[[u32; 8]]) -> Result<FxHashMap<[u32; 2], u32>, MultiplicityClash> {
+/// Per edge of the coarse mesh (smaller vertex first): into how many it is cut.
+pub(crate) fn segments(coarse: &Coarse, hexes: &[[u32; 8]]) -> Result<FxHashMap<[u32; 2], u32>, MultiplicityClash> {
     let mut ids: FxHashMap<[u32; 2], u32> = FxHashMap::default();
     let mut edges = Vec::new();
     for hex in hexes {

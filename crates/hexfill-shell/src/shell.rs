@@ -1,25 +1,33 @@
-//! The engine: candidates for a surface, best first.
+//! The engine: meshes of a surface by layers, by flips, and by flips where layers get no further.
 
 use crate::angles::wanted_hexes;
-use crate::compress::compress;
+use crate::compress::{Coarse, compress, uncompressed};
+use crate::deviation::{Deviation, deviation};
+use crate::front::Front;
 use crate::lift::lift;
+use crate::residual::fill_residual;
 use crate::solve::solve;
+use crate::sweep::{SweepOptions, sweep_front};
 use hexfill_mesh::{Context, HexMesh, QuadSurface};
+use rayon::prelude::*;
 
 /// What to try.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct ShellOptions {
-    /// Restarts of the solver for each number of pillows.
+    /// Restarts of the solver by layers, for each number of pillows.
     pub restarts: u64,
+    /// Seeds of the sweep by flips, for each number of pillows.
+    pub seeds: u64,
     /// Numbers of pillows to try.
     pub pillows: Vec<u32>,
-    /// Candidates wanted.
+    /// Most meshes returned for each number of pillows.
     pub candidates: usize,
 }
 
 impl Default for ShellOptions {
     fn default() -> Self {
-        Self { restarts: 64, pillows: vec![0, 1], candidates: 4 }
+        Self { restarts: 64, seeds: 4, pillows: vec![0, 1], candidates: 3 }
     }
 }
 
@@ -28,7 +36,7 @@ impl Default for ShellOptions {
 pub struct Shelled {
     /// The mesh; the surface's vertices keep their ids, interior vertices follow.
     pub mesh: HexMesh,
-    /// How far its edges are from the hexes they want: 0 is perfect. Comparable among meshes of one surface and pillows only.
+    /// How far its edges are from the hexes they want: 0 is perfect.
     pub cost: f32,
     /// Pillows under the surface.
     pub pillows: u32,
@@ -37,46 +45,155 @@ pub struct Shelled {
 /// What shelling brought.
 #[derive(Clone, Debug, Default)]
 pub struct Shelling {
-    /// Complete meshes, best first for each number of pillows.
+    /// Complete meshes: for each number of pillows those that no other beats in both cost and hexes, least cost first.
     pub meshes: Vec<Shelled>,
     /// Quads of the compressed surface.
     pub coarse_quads: usize,
-    /// Fewest coarse quads that a sweep left, where none was complete.
+    /// Fewest coarse quads that a sweep left; 0 if one was complete.
     pub left: usize,
 }
 
-/// Sweeps a surface inward. `points`: one position per vertex of the surface, outward orientation.
+impl std::fmt::Display for Shelling {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "shelling from {} coarse quads: ", self.coarse_quads)?;
+        match (self.meshes.len(), self.left) {
+            (0, usize::MAX) => write!(f, "stopped"),
+            (0, 0) => write!(f, "nothing that lifts"),
+            (0, left) => write!(f, "{left} quads left"),
+            (n, _) => write!(f, "{n} meshes"),
+        }
+    }
+}
+
+/// Incomplete sweeps by layers that flips go on from.
+const CONTINUED: usize = 4;
+/// Residuals that are filled.
+const RESIDUALS: usize = 4;
+/// Surfaces of more quads are not swept by flips without compression too.
+const MOST_FINE: usize = 20_000;
+
+/// Sweeps a surface inward. `points`: one position per vertex of the surface, outward orientation; without them every edge is
+/// taken for flat.
 pub fn shell(
     surface: &QuadSurface,
     points: Option<&[[f64; 3]]>,
     options: &ShellOptions,
     ctx: &Context<'_>,
 ) -> Shelling {
-    let coarse = compress(surface, &wanted_hexes(surface, points));
+    let wanted = wanted_hexes(surface, points);
+    let coarse = compress(surface, &wanted);
     let mut shelling = Shelling { coarse_quads: coarse.surface.n_quads(), left: usize::MAX, ..Shelling::default() };
     for &pillows in &options.pillows {
-        let mut kept = 0;
-        for sweep in solve(&coarse, pillows, options.restarts, ctx) {
-            shelling.left = shelling.left.min(sweep.void.quads.len());
-            if !sweep.is_complete() || kept >= options.candidates {
-                break;
-            }
-            let Ok((n, hexes)) = lift(&coarse, surface.n_vertices() as u32, &sweep.void.hexes) else { continue };
-            let Ok(mesh) = HexMesh::try_new(n as usize, &hexes) else { continue };
-            shelling.meshes.push(Shelled { mesh, cost: sweep.cost, pillows });
-            kept += 1;
+        let mut found = complete(&coarse, pillows, options, &mut shelling.left, ctx);
+        if found.is_empty() && coarse.surface.n_quads() < surface.n_quads() && surface.n_quads() <= MOST_FINE {
+            let fine = uncompressed(surface, &wanted);
+            let meshes = by_flips(&fine, pillows, options, &[], &mut shelling.left, ctx);
+            keep(&mut shelling.meshes, &fine, surface, pillows, meshes, options);
+        } else {
+            keep(&mut shelling.meshes, &coarse, surface, pillows, std::mem::take(&mut found), options);
         }
     }
     shelling
 }
 
-impl std::fmt::Display for Shelling {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "shelling from {} coarse quads: ", self.coarse_quads)?;
-        match self.meshes.len() {
-            0 if self.left == usize::MAX => write!(f, "stopped"),
-            0 => write!(f, "{} quads left", self.left),
-            n => write!(f, "{n} meshes"),
-        }
+type Hexes = Vec<[u32; 8]>;
+
+/// Complete coarse meshes, by both engines.
+fn complete(
+    coarse: &Coarse,
+    pillows: u32,
+    options: &ShellOptions,
+    left: &mut usize,
+    ctx: &Context<'_>,
+) -> Vec<Hexes> {
+    let sweeps = solve(coarse, pillows, options.restarts, ctx);
+    let (complete, partial): (Vec<_>, Vec<_>) = sweeps.into_iter().partition(|s| s.is_complete());
+    let mut meshes: Vec<Hexes> = complete.into_iter().map(|s| s.void.hexes).collect();
+    if !meshes.is_empty() {
+        *left = 0;
+    }
+    let is_perfect = |h: &Hexes| deviation(coarse, h).is_some_and(|d| d.cost < 1e-3);
+    if meshes.iter().any(is_perfect) {
+        return meshes;
+    }
+    let fronts: Vec<Front> = partial
+        .into_iter()
+        .take(CONTINUED)
+        .filter_map(|s| {
+            let surface: Vec<[u32; 4]> = coarse.surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
+            Front::try_from_parts(s.void.n_vertices, &surface, &s.void.hexes, &s.void.quads).ok()
+        })
+        .collect();
+    meshes.extend(by_flips(coarse, pillows, options, &fronts, left, ctx));
+    meshes
+}
+
+/// Complete coarse meshes by flips, from the surface and from `others`.
+fn by_flips(
+    coarse: &Coarse,
+    pillows: u32,
+    options: &ShellOptions,
+    others: &[Front],
+    left: &mut usize,
+    ctx: &Context<'_>,
+) -> Vec<Hexes> {
+    let Ok(mut front) = Front::new(&coarse.surface) else { return Vec::new() };
+    for _ in 0..pillows {
+        let Ok(inner) = front.pillowed() else { return Vec::new() };
+        front = inner;
+    }
+    let starts: Vec<(&Front, u64)> =
+        (0..options.seeds).map(|seed| (&front, seed)).chain(others.iter().map(|f| (f, 0))).collect();
+    let fronts: Vec<Front> = starts
+        .into_par_iter()
+        .map(|(front, seed)| {
+            let mut front = front.clone();
+            let quiet = Context { progress: None, ..*ctx };
+            sweep_front(&mut front, &SweepOptions { seed, ..SweepOptions::default() }, &quiet);
+            front
+        })
+        .collect();
+    let smallest = fronts.iter().map(Front::n_quads).min().unwrap_or(0);
+    if smallest > 0 && smallest < usize::MAX {
+        // Nothing closed: the smallest residuals are filled.
+        let mut order: Vec<&Front> = fronts.iter().collect();
+        order.sort_by_key(|f| f.n_quads());
+        order.truncate(RESIDUALS);
+        let filled: Vec<Hexes> = order.into_par_iter().filter_map(|front| fill_residual(front, ctx)).collect();
+        *left = if filled.is_empty() { smallest.min(*left) } else { 0 };
+        return filled;
+    }
+    *left = fronts.iter().map(Front::n_quads).fold(*left, usize::min);
+    fronts.into_iter().filter(|f| f.n_quads() == 0).map(|f| f.hexes().to_vec()).collect()
+}
+
+/// Lifts those that no other beats in both cost and hexes.
+fn keep(
+    kept: &mut Vec<Shelled>,
+    coarse: &Coarse,
+    surface: &QuadSurface,
+    pillows: u32,
+    meshes: Vec<Hexes>,
+    options: &ShellOptions,
+) {
+    let mut measured: Vec<(Deviation, Hexes)> =
+        meshes.into_iter().filter_map(|h| deviation(coarse, &h).map(|d| (d, h))).collect();
+    // Stable: first come, first served among equals.
+    measured.sort_by(|a, b| a.0.cost.total_cmp(&b.0.cost).then(a.0.fine_hexes.cmp(&b.0.fine_hexes)));
+    let mut fewest = u64::MAX;
+    measured.retain(|(d, _)| {
+        let keep = d.fine_hexes < fewest;
+        fewest = fewest.min(d.fine_hexes);
+        keep
+    });
+    // The ends of the front and what lies evenly between them.
+    let n = measured.len();
+    let wanted = n.min(options.candidates);
+    let chosen: Vec<usize> = (0..wanted).map(|i| if wanted == 1 { 0 } else { i * (n - 1) / (wanted - 1) }).collect();
+    for i in chosen {
+        let (d, hexes) = &measured[i];
+        let Ok((n, fine)) = lift(coarse, surface.n_vertices() as u32, hexes) else { continue };
+        let Ok(mesh) = HexMesh::try_new(n as usize, &fine) else { continue };
+        kept.push(Shelled { mesh, cost: d.cost, pillows });
     }
 }
