@@ -8,7 +8,7 @@
 //! Lenses are kept in a heap, one for each corner. A change of the front can make new ones only at corners whose arcs run through a changed quad:
 //! those are found by following the chords back. A lens that changed otherwise is noticed when its turn comes.
 
-use crate::front::{Front, FrontError, Mark, NONE, next, opposite};
+use crate::front::{Front, Mark, NONE, next, opposite};
 use crate::lens::{LensFinder, Stamps};
 use hexfill_mesh::{Context, QuadSurface, Random, StopReason};
 use std::cmp::Reverse;
@@ -41,16 +41,17 @@ pub struct Swept {
 }
 
 /// Fills `surface` from its front inward. Each of its components must bound a ball (or a handlebody) of its own.
-///
-/// # Errors
-/// [`FrontError::Improper`] if quads of the surface meet improperly, so that no proper filling exists.
-pub fn sweep(surface: &QuadSurface, options: &SweepOptions, ctx: &Context<'_>) -> Result<Swept, FrontError> {
-    let mut front = Front::new(surface)?;
+/// A surface with quads that meet improperly has no proper filling and comes back as it is: no hexes, all quads left.
+pub fn sweep(surface: &QuadSurface, options: &SweepOptions, ctx: &Context<'_>) -> Swept {
+    let Ok(mut front) = Front::new(surface) else {
+        let front = surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
+        return Swept { n_vertices: surface.n_vertices() as u32, hexes: Vec::new(), front, stopped: None };
+    };
     for _ in 0..options.pillows {
-        front = front.pillowed()?;
+        front = front.pillowed();
     }
     let stopped = sweep_front(&mut front, options, ctx);
-    Ok(front.finish(stopped))
+    front.finish(stopped)
 }
 
 /// Empties lenses of a front until none can be emptied; `None`, or why it stopped early.
@@ -60,10 +61,7 @@ pub fn sweep_front(front: &mut Front, options: &SweepOptions, ctx: &Context<'_>)
 
 impl Front {
     /// The state after one more whole layer: a hex on every front quad, its other end on a copy of the front.
-    ///
-    /// # Errors
-    /// [`FrontError::Improper`]; not for a state that is proper.
-    pub fn pillowed(&self) -> Result<Self, FrontError> {
+    pub fn pillowed(&self) -> Self {
         let mut copy = vec![NONE; self.n_vertices() as usize];
         let mut n_vertices = self.n_vertices();
         let (mut hexes, mut quads) = (self.hexes().to_vec(), self.quads());
@@ -80,14 +78,14 @@ impl Front {
             hexes.push([a, b, c, d, e, f, g, h]);
             *quad = inner;
         }
-        Self::try_from_parts(n_vertices, self.surface(), &hexes, &quads)
+        self.with(n_vertices, &hexes, &quads).expect("a copy of a proper front meets nothing else")
     }
 
     /// The result, with the vertices numbered without gaps: those of the surface keep their ids.
-    fn finish(&self, stopped: Option<StopReason>) -> Swept {
+    pub fn finish(&self, stopped: Option<StopReason>) -> Swept {
         let (mut hexes, mut front) = (self.hexes().to_vec(), self.quads());
         let mut used = vec![false; self.n_vertices() as usize];
-        let first_new = self.n_surface_vertices();
+        let first_new = self.n_kept();
         used[..first_new as usize].fill(true);
         hexes.iter().flatten().for_each(|&v| used[v as usize] = true);
         let mut n_vertices = 0;
@@ -276,7 +274,7 @@ mod tests {
     fn boxes_are_their_voxels() {
         for n in 2..=6 {
             let surface = voxel_surface([n, n, n], |_| true).unwrap();
-            let swept = sweep(&surface, &SweepOptions::default(), &Context::default()).unwrap();
+            let swept = sweep(&surface, &SweepOptions::default(), &Context::default());
             assert_eq!(judged(&surface, &swept), n * n * n);
         }
     }
