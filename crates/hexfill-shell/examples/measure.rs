@@ -25,7 +25,7 @@ fn main() {
     let mut options = SweepOptions::default();
     for argument in std::env::args().skip(1) {
         let number = |text: &str| text.parse::<usize>().unwrap();
-        let (surface, _points) = match argument.split_once([':', '=']) {
+        let (surface, points) = match argument.split_once([':', '=']) {
             Some(("pillows", k)) => {
                 options.pillows = k.parse().unwrap();
                 continue;
@@ -41,7 +41,7 @@ fn main() {
         };
         let crossings: usize = chords(&surface).iter().map(|c| c.self_crossings.len()).sum();
         let start = std::time::Instant::now();
-        let swept = sweep(&surface, &options, &Context::default());
+        let swept = sweep(&surface, Some(&points), &options, &Context::default());
         let time = start.elapsed().as_secs_f64();
         let mut verdict = "open";
         if swept.front.is_empty() {

@@ -1,9 +1,13 @@
 //! Shelling: closed quad surfaces of any size swept inward by their own dual curves, until nothing is left to fill.
 
 mod front;
+mod inside;
 mod lens;
 mod pairs;
+mod plug;
 mod sweep;
+#[cfg(test)]
+mod test_surfaces;
 mod zip;
 
 pub use front::{Front, FrontError, Mark};
