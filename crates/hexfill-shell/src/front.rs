@@ -93,6 +93,8 @@ pub struct Front {
     /// The surface's quads, and per fixed vertex its neighbours along surface edges.
     surface: Vec<[u32; 4]>,
     surface_neighbours: Vec<Vec<u32>>,
+    /// Vertex ids below this one keep their names.
+    n_kept: u32,
     journal: Vec<Change>,
 }
 
@@ -103,7 +105,8 @@ impl Front {
     /// [`FrontError::Improper`] if quads of the surface meet improperly.
     pub fn new(surface: &QuadSurface) -> Result<Self, FrontError> {
         let quads: Vec<[u32; 4]> = surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
-        Self::try_from_parts(surface.n_vertices() as u32, &quads, &[], &quads)
+        let state = Self::try_from_parts(surface.n_vertices() as u32, &quads, &[], &quads)?;
+        Ok(Self { n_kept: surface.n_vertices() as u32, ..state })
     }
 
     /// A state to go on from: `n_vertices` vertices in all, the quads of the surface (whose vertices are never merged), the
@@ -134,6 +137,7 @@ impl Front {
             pairs: PairTable::default(),
             surface: surface.to_vec(),
             surface_neighbours: vec![Vec::new(); n],
+            n_kept: surface.iter().flatten().max().map_or(0, |v| v + 1),
             journal: Vec::new(),
         };
         if !front.is_empty() {
@@ -188,9 +192,15 @@ impl Front {
         &self.surface
     }
 
-    /// Number of vertex ids up to the last one of the surface: these keep their names.
-    pub(crate) fn n_surface_vertices(&self) -> u32 {
-        self.fixed.iter().rposition(|&f| f).map_or(0, |v| v as u32 + 1)
+    /// Number of vertex ids that keep their names: those of the surface.
+    pub(crate) fn n_kept(&self) -> u32 {
+        self.n_kept
+    }
+
+    /// The same surface with other hexes and another front.
+    pub(crate) fn with(&self, n_vertices: u32, hexes: &[[u32; 8]], front: &[[u32; 4]]) -> Result<Self, FrontError> {
+        let state = Self::try_from_parts(n_vertices, &self.surface, hexes, front)?;
+        Ok(Self { n_kept: self.n_kept, ..state })
     }
 
     /// Whether a vertex belongs to the surface.
@@ -430,7 +440,11 @@ impl Front {
             for d in 4 * q..4 * q + 4 {
                 let t = self.twin(d);
                 assert!(self.is_quad(t / 4) && self.twin(t) == d && t != d);
-                assert_eq!((self.origin(d), self.target(d)), (self.target(t), self.origin(t)), "twins run opposite ways");
+                assert_eq!(
+                    (self.origin(d), self.target(d)),
+                    (self.target(t), self.origin(t)),
+                    "twins run opposite ways"
+                );
                 assert!(edges.insert((self.origin(d), self.target(d))), "one front edge a pair");
                 degree[self.origin(d) as usize] += 1;
             }
@@ -447,7 +461,8 @@ impl Front {
         self.pairs.debug_check(&self.hexes, &self.surface);
         for (v, star) in self.star.iter().enumerate().filter(|(_, s)| !s.is_empty()) {
             // The star of a vertex that was merged into another is left as it was.
-            let current: Vec<u32> = star.iter().copied().filter(|&h| self.hexes[h as usize].contains(&(v as u32))).collect();
+            let current: Vec<u32> =
+                star.iter().copied().filter(|&h| self.hexes[h as usize].contains(&(v as u32))).collect();
             assert!(current.is_empty() || current.len() == star.len());
         }
         for (h, hex) in self.hexes.iter().enumerate() {

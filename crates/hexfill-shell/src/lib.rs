@@ -8,17 +8,22 @@ mod angles;
 mod compress;
 mod deviation;
 mod front;
+mod inside;
 mod kinds;
 mod layer;
 mod lens;
 mod lift;
 mod pairs;
+mod plug;
 mod residual;
 mod shell;
 mod solve;
 mod sweep;
 mod void;
 mod zip;
+
+#[cfg(test)]
+mod test_surfaces;
 
 pub use front::{Front, FrontError, Mark};
 pub use shell::{ShellOptions, Shelled, Shelling, shell};

@@ -46,9 +46,9 @@ fn diagonal(a: u32, b: u32) -> Join {
 /// The 28 pairs of a hex.
 fn pairs_of_hex(h: &[u32; 8]) -> impl Iterator<Item = (u32, u32, Join)> + '_ {
     let edges = EDGES.iter().map(|&[i, j]| (h[i], h[j], Join::Edge));
-    let diagonals = FACET_DIAGONALS.iter().flat_map(|&[[i, j], [k, l]]| {
-        [(h[i], h[j], diagonal(h[k], h[l])), (h[k], h[l], diagonal(h[i], h[j]))]
-    });
+    let diagonals = FACET_DIAGONALS
+        .iter()
+        .flat_map(|&[[i, j], [k, l]]| [(h[i], h[j], diagonal(h[k], h[l])), (h[k], h[l], diagonal(h[i], h[j]))]);
     edges.chain(diagonals).chain(BODY_DIAGONALS.iter().map(|&[i, j]| (h[i], h[j], Join::Body)))
 }
 

@@ -8,7 +8,7 @@
 //! Lenses are kept in a heap, one for each corner. A change of the front can make new ones only at corners whose arcs run through a changed quad:
 //! those are found by following the chords back. A lens that changed otherwise is noticed when its turn comes.
 
-use crate::front::{Front, FrontError, Mark, NONE, next, opposite};
+use crate::front::{Front, Mark, NONE, next, opposite};
 use crate::lens::{LensFinder, Stamps};
 use hexfill_mesh::{Context, QuadSurface, Random, StopReason};
 use std::cmp::Reverse;
@@ -40,17 +40,32 @@ pub struct Swept {
     pub stopped: Option<StopReason>,
 }
 
-/// Fills `surface` from its front inward. Each of its components must bound a ball (or a handlebody) of its own.
+/// Fills `surface` from its front inward. Each of its components must bound a ball (or a handlebody) of its own. Handles are cut by plugs, which
+/// need `points`, a position for each vertex of the surface; without them a surface with handles is not filled to the end.
 ///
-/// # Errors
-/// [`FrontError::Improper`] if quads of the surface meet improperly, so that no proper filling exists.
-pub fn sweep(surface: &QuadSurface, options: &SweepOptions, ctx: &Context<'_>) -> Result<Swept, FrontError> {
-    let mut front = Front::new(surface)?;
+/// A surface with quads that meet improperly has no proper filling and comes back as it is: no hexes, all quads left.
+pub fn sweep(surface: &QuadSurface, points: Option<&[[f64; 3]]>, options: &SweepOptions, ctx: &Context<'_>) -> Swept {
+    let Ok(mut front) = Front::new(surface) else {
+        let front = surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
+        return Swept { n_vertices: surface.n_vertices() as u32, hexes: Vec::new(), front, stopped: None };
+    };
+    let mut points: Option<Vec<[f64; 3]>> = points.filter(|p| p.len() == surface.n_vertices()).map(<[_]>::to_vec);
     for _ in 0..options.pillows {
-        front = front.pillowed()?;
+        let (layered, below) = front.pillowed();
+        front = layered;
+        if let Some(points) = &mut points {
+            points.extend(below.iter().map(|&v| points[v as usize]).collect::<Vec<_>>());
+        }
+    }
+    if let Some(points) = &mut points {
+        for handle in 0..surface.genus() {
+            let Some(plugged) = ctx.stop().is_none().then(|| front.plug(points)).flatten() else { break };
+            front = plugged;
+            ctx.report("shelling", handle + 1, Some(surface.genus()), || "handles cut".to_owned());
+        }
     }
     let stopped = sweep_front(&mut front, options, ctx);
-    Ok(front.finish(stopped))
+    front.finish(stopped)
 }
 
 /// Empties lenses of a front until none can be emptied; `None`, or why it stopped early.
@@ -59,11 +74,10 @@ pub fn sweep_front(front: &mut Front, options: &SweepOptions, ctx: &Context<'_>)
 }
 
 impl Front {
-    /// The state after one more whole layer: a hex on every front quad, its other end on a copy of the front.
-    ///
-    /// # Errors
-    /// [`FrontError::Improper`]; not for a state that is proper.
-    pub fn pillowed(&self) -> Result<Self, FrontError> {
+    /// The state after one more whole layer: a hex on every front quad, its other end on a copy of the front. With it, for
+    /// each new vertex the one it is a copy of.
+    pub fn pillowed(&self) -> (Self, Vec<u32>) {
+        let mut below = Vec::new();
         let mut copy = vec![NONE; self.n_vertices() as usize];
         let mut n_vertices = self.n_vertices();
         let (mut hexes, mut quads) = (self.hexes().to_vec(), self.quads());
@@ -73,6 +87,7 @@ impl Front {
                 if *slot == NONE {
                     *slot = n_vertices;
                     n_vertices += 1;
+                    below.push(v);
                 }
                 *slot
             });
@@ -80,14 +95,15 @@ impl Front {
             hexes.push([a, b, c, d, e, f, g, h]);
             *quad = inner;
         }
-        Self::try_from_parts(n_vertices, self.surface(), &hexes, &quads)
+        let state = self.with(n_vertices, &hexes, &quads).expect("a copy of a proper front meets nothing else");
+        (state, below)
     }
 
     /// The result, with the vertices numbered without gaps: those of the surface keep their ids.
-    fn finish(&self, stopped: Option<StopReason>) -> Swept {
+    pub fn finish(&self, stopped: Option<StopReason>) -> Swept {
         let (mut hexes, mut front) = (self.hexes().to_vec(), self.quads());
         let mut used = vec![false; self.n_vertices() as usize];
-        let first_new = self.n_surface_vertices();
+        let first_new = self.n_kept();
         used[..first_new as usize].fill(true);
         hexes.iter().flatten().for_each(|&v| used[v as usize] = true);
         let mut n_vertices = 0;
@@ -258,26 +274,29 @@ impl<'a> Sweeper<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use hexfill_check::{Judged, Level, judge};
+    use crate::test_surfaces::{judged, read_obj, torus_at};
     use hexfill_mesh::generate::{random_sphere, voxel_surface};
-
-    /// Judges a complete filling with levels 1 to 3; the number of hexes.
-    fn judged(surface: &QuadSurface, swept: &Swept) -> usize {
-        assert!(swept.front.is_empty());
-        let quads: Vec<[u32; 4]> = surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
-        let input = Judged::connectivity(swept.n_vertices as usize, &swept.hexes).with_surface(&quads);
-        let options = hexfill_check::Options::default().up_to(Level::L3);
-        let report = judge(&input, &options, &Context::default());
-        assert!(report.passed(Level::L3), "{:?}", report.failures);
-        swept.hexes.len()
-    }
 
     #[test]
     fn boxes_are_their_voxels() {
         for n in 2..=6 {
             let surface = voxel_surface([n, n, n], |_| true).unwrap();
-            let swept = sweep(&surface, &SweepOptions::default(), &Context::default()).unwrap();
+            let swept = sweep(&surface, None, &SweepOptions::default(), &Context::default());
             assert_eq!(judged(&surface, &swept), n * n * n);
         }
+    }
+
+    #[test]
+    fn handles_are_plugged() {
+        let (surface, points) = torus_at(12, 8);
+        for (pillows, hexes) in [(0, 36), (1, 132)] {
+            let options = SweepOptions { pillows, ..Default::default() };
+            let swept = sweep(&surface, Some(&points), &options, &Context::default());
+            assert_eq!(judged(&surface, &swept), hexes);
+        }
+        let (pen, points) = read_obj(include_str!("../../../corpus/surfaces/bamboo_pen.obj"));
+        let options = SweepOptions { pillows: 1, ..Default::default() };
+        let swept = sweep(&pen, Some(&points), &options, &Context::default());
+        println!("{}", judged(&pen, &swept));
     }
 }

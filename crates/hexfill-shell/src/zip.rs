@@ -191,7 +191,13 @@ impl Front {
             (true, false) => (s, t),
             (false, true) => (t, s),
             // The new vertex, or that with fewer hexes, is renamed.
-            (false, false) => if self.star(s).len() < self.star(t).len() { (t, s) } else { (s, t) },
+            (false, false) => {
+                if self.star(s).len() < self.star(t).len() {
+                    (t, s)
+                } else {
+                    (s, t)
+                }
+            }
         };
         let near = self.neighbours(kept);
         let common = self.neighbours(gone).into_iter().filter(|v| near.binary_search(v).is_ok());

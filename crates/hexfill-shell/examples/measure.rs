@@ -1,0 +1,62 @@
+//! Measures sweeps: `cargo run --release -p hexfill-shell --example measure -- SURFACE.obj|box:N|refined:N ... [pillows=K] [seed=S]`.
+
+use hexfill_check::{Judged, Level, judge};
+use hexfill_mesh::generate::{octagonal_spindle, refined, schneiders_pyramid, voxel_surface};
+use hexfill_mesh::{Context, QuadSurface, chords};
+use hexfill_shell::{SweepOptions, sweep};
+
+fn read_obj(text: &str) -> (QuadSurface, Vec<[f64; 3]>) {
+    let (mut points, mut faces) = (Vec::new(), Vec::new());
+    for line in text.lines() {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        match words.first() {
+            Some(&"v") => points.push([1, 2, 3].map(|k| words[k].parse::<f64>().unwrap())),
+            Some(&"f") => {
+                let index = |w: &&str| w.split('/').next().unwrap().parse::<u32>().unwrap() - 1;
+                faces.push(words[1..].iter().map(index).collect::<Vec<u32>>());
+            }
+            _ => {}
+        }
+    }
+    (QuadSurface::try_from_polygons(points.len(), &faces).unwrap(), points)
+}
+
+fn main() {
+    let mut options = SweepOptions::default();
+    for argument in std::env::args().skip(1) {
+        let number = |text: &str| text.parse::<usize>().unwrap();
+        let (surface, points) = match argument.split_once([':', '=']) {
+            Some(("pillows", k)) => {
+                options.pillows = k.parse().unwrap();
+                continue;
+            }
+            Some(("seed", k)) => {
+                options.seed = k.parse().unwrap();
+                continue;
+            }
+            Some(("box", n)) => (voxel_surface([number(n); 3], |_| true).unwrap(), Vec::new()),
+            Some(("pyramid", n)) => (refined(&schneiders_pyramid(), number(n) as u32).unwrap(), Vec::new()),
+            Some(("spindle", n)) => (refined(&octagonal_spindle(), number(n) as u32).unwrap(), Vec::new()),
+            _ => read_obj(&std::fs::read_to_string(&argument).unwrap()),
+        };
+        let crossings: usize = chords(&surface).iter().map(|c| c.self_crossings.len()).sum();
+        let start = std::time::Instant::now();
+        let swept = sweep(&surface, Some(&points), &options, &Context::default());
+        let time = start.elapsed().as_secs_f64();
+        let mut verdict = "open";
+        if swept.front.is_empty() {
+            let quads: Vec<[u32; 4]> = surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
+            let input = Judged::connectivity(swept.n_vertices as usize, &swept.hexes).with_surface(&quads);
+            let options = hexfill_check::Options::default().up_to(Level::L3);
+            verdict =
+                if judge(&input, &options, &Context::default()).passed(Level::L3) { "proper" } else { "IMPROPER" };
+        }
+        println!(
+            "{argument}: {} quads, genus {}, {crossings} self-crossings: {} hexes, {} quads left, {time:.2} s, {verdict}",
+            surface.n_quads(),
+            surface.genus(),
+            swept.hexes.len(),
+            swept.front.len()
+        );
+    }
+}
