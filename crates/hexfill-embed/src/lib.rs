@@ -8,6 +8,7 @@
 //! 4. **report**: validity in floating point, worst cells, and the vertex-star upper bounds no embedding can beat.
 //!
 //! Boundary vertices keep the bits they were given. Nothing here is a proof: that is for `hexfill-check`.
+//! What bounds every mesh of a surface, or every one-edge layer, is known before there is one ([`surface_limits`]).
 //! Surfaces without coordinates get those of the canonical polyhedron ([`canonical_polyhedron`]).
 
 // Matrices and small vectors read like their formulas with indices.
@@ -34,6 +35,7 @@ mod report;
 mod samples;
 mod star;
 mod star_search;
+mod surface_limits;
 mod symmetry;
 mod tutte;
 mod untangle;
@@ -44,3 +46,4 @@ pub use embed::{embed, star_bounds, tutte_start};
 pub use error::EmbedError;
 pub use report::{CellQuality, EmbedReport, Embedding, Objective, Options};
 pub use star::StarBound;
+pub use surface_limits::{CornerLimit, EdgeLimit, SurfaceLimits, VertexLimit, surface_limits};

@@ -3,8 +3,8 @@
 //! Keep a boundary vertex and the directions of its fixed edges, and let every other edge at it point anywhere. The best
 //! possible worst corner there bounds the scaled Jacobian of the whole mesh. A corner with no free edge is a number;
 //! corners with exactly one free edge u are linear in it, `u . n` with n the cross product of the two fixed unit edges, and
-//! the maximum over unit u of the minimum over the corners round u is found in closed form: at the optimum one,
-//! two or three corners are equal and their normals span u, so finitely many candidates suffice. Leaving corners out can only
+//! the maximum over unit u of the minimum over the corners round u is found in closed form
+//! ([`hexfill_geometry::best_direction`]). Leaving corners out can only
 //! raise a bound, so corners with two or three free edges may wait: [`refine`] takes them in by branch and bound
 //! ([`crate::star_search`]) where that can lower the least bound of the mesh.
 //!
@@ -12,8 +12,9 @@
 //! those at a boundary edge its dihedral angle. So some corner has at most the mean of either: see [`angle_bound`].
 
 use crate::problem::{FIXED, Problem};
-use crate::star_search::{Directions, Ray, SETTLED};
-use crate::vector::{Vector, cross, dot, scale, sub, unit};
+use crate::star_search::{Directions, SETTLED};
+use crate::vector::{Vector, cross, dot, sub, unit};
+use hexfill_geometry::{Ray, best_direction, dihedral_angle};
 use hexfill_mesh::cube::CORNER_NEIGHBOURS;
 use hexfill_mesh::{Context, VertexId};
 use rayon::prelude::*;
@@ -103,7 +104,7 @@ fn star(problem: &Problem, points: &[Vector], v: u32, corners: &[[u32; 3]]) -> S
         }
     }
     let by_direction =
-        normals.iter().filter(|n| !n.is_empty()).map(|n| best_direction(n)).fold(least, f64::min).min(1.0);
+        normals.iter().filter(|n| !n.is_empty()).map(|n| best_direction(n).value).fold(least, f64::min).min(1.0);
     let angle_bound = angle_bound(corners, |w| is_fixed(w).then(|| direction(w)));
     let ray = |w: u32| match free.binary_search(&w) {
         Ok(j) => Ray::Free(j),
@@ -128,7 +129,7 @@ fn star(problem: &Problem, points: &[Vector], v: u32, corners: &[[u32; 3]]) -> S
 /// farthest from the side's plane in the isosceles case). Of m corners in the dihedral angle `a` one has at most `a / m`, and a
 /// determinant is at most the sine of its dihedral angle.
 fn angle_bound(corners: &[[u32; 3]], direction: impl Fn(u32) -> Option<Vector>) -> f64 {
-    use std::f64::consts::{FRAC_PI_2, PI, TAU};
+    use std::f64::consts::{FRAC_PI_2, PI};
     // Arcs a -> b of the link's triangles that no neighbour has as b -> a: the rim, with the disk on the left.
     let arcs: Vec<[u32; 2]> = corners.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
     let mut back: Vec<[u32; 2]> = arcs.iter().map(|&[a, b]| [b, a]).collect();
@@ -141,9 +142,7 @@ fn angle_bound(corners: &[[u32; 3]], direction: impl Fn(u32) -> Option<Vector>) 
     loop {
         let Some(&after) = rim.get(&at) else { return 1.0 };
         let (Some(e), Some(p), Some(q)) = (direction(at), direction(before), direction(after)) else { return 1.0 };
-        let tangent = |d: Vector| unit(sub(d, scale(dot(d, e), e)));
-        let (Some(to_q), Some(to_p)) = (tangent(q), tangent(p)) else { return 1.0 };
-        let angle = dot(e, cross(to_q, to_p)).atan2(dot(to_q, to_p)).rem_euclid(TAU);
+        let Some(angle) = dihedral_angle(e, q, p) else { return 1.0 };
         let share = angle / corners.iter().filter(|c| c.contains(&at)).count() as f64;
         if share < FRAC_PI_2 {
             bound = bound.min(share.sin());
@@ -202,67 +201,10 @@ pub(crate) fn refine(stars: &mut [Star], hint: &[Vector], context: &Context<'_>)
     }
 }
 
-/// The maximum over unit vectors u of the minimum of `u . n` over the normals.
-fn best_direction(normals: &[Vector]) -> f64 {
-    let value = |u: Vector| normals.iter().map(|&n| dot(u, n)).fold(f64::INFINITY, f64::min);
-    let mut best = -1.0f64;
-    let mut consider = |candidate: Vector| {
-        if let Some(u) = unit(candidate) {
-            best = best.max(value(u)).max(value(scale(-1.0, u)));
-        }
-    };
-    for (i, &a) in normals.iter().enumerate() {
-        consider(a);
-        // Opposite normals: the best is any direction across them, with value 0.
-        for axis in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] {
-            consider(cross(a, axis));
-        }
-        for (j, &b) in normals.iter().enumerate().take(i) {
-            let along = sub(b, a);
-            // The point of the line a b nearest to the origin: equal products with a and b, within their plane.
-            let square = dot(along, along);
-            if square > 0.0 {
-                consider(crate::vector::add_scaled(a, -dot(a, along) / square, along));
-            }
-            for &c in &normals[..j] {
-                consider(cross(along, sub(c, a)));
-            }
-        }
-    }
-    // All normals zero: every direction gives 0.
-    if normals.iter().all(|n| dot(*n, *n) == 0.0) { 0.0 } else { best }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::random::Random;
-
-    #[test]
-    fn closed_form_beats_and_meets_a_dense_sampling() {
-        let mut random = Random::new(21, 0);
-        for case in 0..30 {
-            let normals: Vec<Vector> =
-                (0..1 + case % 6).map(|_| [random.signed(), random.signed(), 0.3 + random.unit()]).collect();
-            let exact = best_direction(&normals);
-            let mut sampled = -1.0f64;
-            for _ in 0..20000 {
-                if let Some(u) = unit([random.signed(), random.signed(), random.signed()]) {
-                    sampled = sampled.max(normals.iter().map(|&n| dot(u, n)).fold(f64::INFINITY, f64::min));
-                }
-            }
-            assert!(sampled <= exact + 1e-12 && exact < sampled + 0.05, "{exact} {sampled}");
-        }
-    }
-
-    #[test]
-    fn opposite_normals_leave_zero_not_less() {
-        let (up, down) = ([0.0, 0.0, 1.0], [0.0, 0.0, -0.5]);
-        assert_eq!(best_direction(&[up, down]), 0.0);
-        // A third normal is met by turning across the first two.
-        assert!(best_direction(&[up, down, [0.6, 0.0, 0.8]]).abs() < 1e-12);
-        assert!(best_direction(&[up, down, [0.6, 0.0, 0.0], [-0.6, 0.0, 0.0]]).abs() < 1e-12);
-    }
 
     #[test]
     fn no_triangle_of_an_area_beats_the_equilateral_one() {
@@ -294,7 +236,7 @@ mod tests {
         let by_solid = equilateral(std::f64::consts::FRAC_PI_2 / 3.0);
         assert!((bound - by_solid.min(0.5f64.sqrt())).abs() < 1e-12);
         let normals: Vec<Vector> = [[0, 1], [1, 2], [2, 0]].iter().map(|&[i, j]| cross(rays[i], rays[j])).collect();
-        assert!(best_direction(&normals) <= bound + 1e-12);
+        assert!(best_direction(&normals).value <= bound + 1e-12);
         // Seen from the other side the angles are those outside; a rim with a free edge says nothing.
         let outside = [[1, 0, 3], [2, 1, 3], [0, 2, 3]];
         assert_eq!(angle_bound(&outside, |w| rays.get(w as usize).copied()), 1.0);

@@ -14,15 +14,9 @@
 use crate::program::Program;
 use crate::random::Random;
 use crate::vector::{Vector, add, add_scaled, cross, det, dot, midpoint, norm, scale, sub, unit};
+use hexfill_geometry::Ray;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
-
-/// An edge of a star: of given direction, or free.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Ray {
-    Fixed(Vector),
-    Free(usize),
-}
 
 /// Corners as triples of rays, right-handed.
 #[derive(Clone, Debug)]

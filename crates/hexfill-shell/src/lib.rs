@@ -18,6 +18,7 @@ mod plug;
 mod residual;
 mod shell;
 mod solve;
+mod split_star;
 mod sweep;
 mod void;
 mod zip;
@@ -27,5 +28,6 @@ mod test_surfaces;
 
 pub use front::{Front, FrontError, Mark};
 pub use shell::{ShellOptions, Shelled, Shelling, shell};
+pub use split_star::{SplitOptions, SplitStars, SplitVertex, split_stars};
 pub use sweep::{SweepOptions, Swept, sweep, sweep_front};
 pub use zip::Refused;

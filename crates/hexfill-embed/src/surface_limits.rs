@@ -1,0 +1,207 @@
+//! What a surface allows before any mesh is made of it: directions at its vertices, angles of its corners and edges.
+//!
+//! Three limits, from hard to soft:
+//! * a **corner** of a quad is a corner of some hex in every mesh, and a scaled Jacobian there is at most the sine of its angle;
+//! * an **edge** has m >= 1 hexes round it, whose corners share its dihedral angle: one of them has at most a / m, and the sine of that
+//!   bounds it (for an angle below 90 degrees the best is m = 1); angle / 90 is how many hexes it wants;
+//! * a **vertex** with one interior edge, as behind any layer of one hex a quad, needs a direction that sees all its quads. Where there is
+//!   none ([`VertexLimit::bound`] <= 0), no such layer is valid, whatever lies behind it; a second interior edge can be
+//!   (`hexfill-shell`, split stars).
+//!
+//! Angles are seen from the vertex itself, along edges, as Jacobians are. All in floating point: nothing here is a proof.
+
+use crate::star::serialize_vertex;
+use hexfill_geometry::{Vector, add, best_direction, corner_angle, cross, dihedral_angle, direction, scale};
+use hexfill_mesh::{Dart, Edge, QuadId, QuadSurface, VertexId};
+use rayon::prelude::*;
+use serde::{Serialize, Serializer};
+
+/// What bounds the meshes of a surface; each list worst first, ties by id.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct SurfaceLimits {
+    /// Every used vertex, by [`VertexLimit::bound`].
+    pub vertices: Vec<VertexLimit>,
+    /// Every corner of every quad, by [`CornerLimit::bound`].
+    pub corners: Vec<CornerLimit>,
+    /// Every edge, sharpest first.
+    pub edges: Vec<EdgeLimit>,
+}
+
+/// What one interior edge can reach at a vertex.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct VertexLimit {
+    /// The vertex.
+    #[serde(serialize_with = "serialize_vertex")]
+    pub vertex: VertexId,
+    /// The largest possible worst scaled Jacobian of the corners at the vertex, if each of its quads has one hex and all
+    /// these share one interior edge. Not positive: no direction sees all quads.
+    pub bound: f64,
+    /// The unit direction that reaches it.
+    pub direction: [f64; 3],
+}
+
+/// The angle of a quad at one of its corners.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct CornerLimit {
+    /// The quad.
+    #[serde(serialize_with = "serialize_quad")]
+    pub quad: QuadId,
+    /// The corner.
+    #[serde(serialize_with = "serialize_vertex")]
+    pub vertex: VertexId,
+    /// The angle in degrees: near 0 a needle, near 180 flat, above 180 reflex (the quad is not convex).
+    pub degrees: f64,
+    /// No hex mesh has a larger scaled Jacobian at this corner: the sine of the angle, without its sign; 0 for an edge of length 0.
+    pub bound: f64,
+}
+
+/// The dihedral angle inside the solid at an edge.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct EdgeLimit {
+    /// The edge.
+    #[serde(serialize_with = "serialize_edge")]
+    pub edge: Edge,
+    /// The angle in degrees, the smaller of those at its two ends; 0 to 360. 0 where a quad is degenerate.
+    pub degrees: f64,
+    /// How many hexes the edge wants round it: degrees / 90.
+    pub hexes: f64,
+    /// No hex mesh of a surface that does not cross itself has a larger worst corner at this edge: 1 from 90 degrees on, else the sine.
+    pub bound: f64,
+}
+
+fn serialize_quad<S: Serializer>(q: &QuadId, s: S) -> Result<S::Ok, S::Error> {
+    s.serialize_u32(q.0)
+}
+
+fn serialize_edge<S: Serializer>(e: &Edge, s: S) -> Result<S::Ok, S::Error> {
+    [e.0.0, e.1.0].serialize(s)
+}
+
+/// The limits of a surface whose quads face outward, with `points[v]` the position of vertex v, in any unit.
+/// Returns `None` if a used vertex has no finite position. Linear time but for the sorting, on all threads of the surrounding pool.
+pub fn surface_limits(surface: &QuadSurface, points: &[[f64; 3]]) -> Option<SurfaceLimits> {
+    let placed = |v: &VertexId| points.get(v.index()).is_some_and(|p| p.iter().all(|x| x.is_finite()));
+    if !surface.quads().iter().flatten().all(placed) {
+        return None;
+    }
+    // A degenerate edge has no direction: everything it is part of is worth 0.
+    let along = |d: Dart| -> Vector {
+        direction(points[surface.origin(d).index()], points[surface.target(d).index()]).unwrap_or([0.0; 3])
+    };
+    let edges_at = |d: Dart| (along(d), along_back(&along, d));
+    let darts: Vec<Dart> = surface.dart_of_vertices().into_iter().flatten().collect();
+    let mut vertices: Vec<VertexLimit> = darts
+        .par_iter()
+        .with_min_len(256)
+        .map(|&first| {
+            // The frame (next edge, previous edge, inward) of an outward quad's corner is left-handed.
+            let normals: Vec<Vector> = surface
+                .round_vertex(first)
+                .map(|d| {
+                    let (next, previous) = edges_at(d);
+                    cross(previous, next)
+                })
+                .collect();
+            let best = best_direction(&normals);
+            VertexLimit { vertex: surface.origin(first), bound: best.value.min(1.0), direction: best.direction }
+        })
+        .collect();
+    let all: Vec<Dart> = surface.darts().collect();
+    let mut corners: Vec<CornerLimit> = all
+        .par_iter()
+        .with_min_len(1024)
+        .map(|&d| {
+            let (next, previous) = edges_at(d);
+            // The mean normal, from all four corners.
+            let mut normal = [0.0; 3];
+            let mut at = d;
+            for _ in 0..4 {
+                let (a, b) = edges_at(at);
+                normal = add(normal, cross(a, b));
+                at = at.next();
+            }
+            let angle = corner_angle(next, previous, normal);
+            let bound = if next == [0.0; 3] || previous == [0.0; 3] { 0.0 } else { angle.sin().abs() };
+            CornerLimit { quad: d.quad(), vertex: surface.origin(d), degrees: angle.to_degrees(), bound }
+        })
+        .collect();
+    // The angle at an edge's origin, inside: from the right to the left, where the dart's own quad is.
+    let at_origin = |d: Dart| {
+        let left = along_back(&along, d);
+        let right = along(surface.twin(d).next());
+        dihedral_angle(along(d), right, left).unwrap_or(0.0)
+    };
+    let mut edges: Vec<EdgeLimit> = all
+        .par_iter()
+        .with_min_len(1024)
+        .filter(|&&d| d < surface.twin(d))
+        .map(|&d| {
+            let angle = at_origin(d).min(at_origin(surface.twin(d)));
+            let degrees = angle.to_degrees();
+            let bound = if degrees < 90.0 { angle.sin() } else { 1.0 };
+            EdgeLimit { edge: Edge::new(surface.origin(d), surface.target(d)), degrees, hexes: degrees / 90.0, bound }
+        })
+        .collect();
+    vertices.par_sort_by(|a, b| a.bound.total_cmp(&b.bound).then(a.vertex.cmp(&b.vertex)));
+    corners.par_sort_by(|a, b| a.bound.total_cmp(&b.bound).then((a.quad, a.vertex).cmp(&(b.quad, b.vertex))));
+    edges.par_sort_by(|a, b| a.degrees.total_cmp(&b.degrees).then(a.edge.cmp(&b.edge)));
+    Some(SurfaceLimits { vertices, corners, edges })
+}
+
+/// The direction from a dart's origin to the corner before it.
+fn along_back(along: &impl Fn(Dart) -> Vector, d: Dart) -> Vector {
+    // Three steps on is one back.
+    scale(-1.0, along(d.next().next().next()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hexfill_mesh::cube::{FACETS, POSITIONS};
+
+    fn cube() -> (QuadSurface, Vec<Vector>) {
+        let quads: Vec<[u32; 4]> = FACETS.iter().map(|f| f.map(|v| v as u32)).collect();
+        (QuadSurface::try_new(8, &quads).unwrap(), POSITIONS.map(|p| p.map(f64::from)).to_vec())
+    }
+
+    #[test]
+    fn a_cube() {
+        let (surface, points) = cube();
+        for scale in [1.0, 1e-200, 1e300] {
+            let points: Vec<Vector> = points.iter().map(|p| p.map(|x| x * scale)).collect();
+            let limits = surface_limits(&surface, &points).unwrap();
+            assert_eq!((limits.vertices.len(), limits.corners.len(), limits.edges.len()), (8, 24, 12));
+            assert!(limits.vertices.iter().all(|v| (v.bound - 1.0 / 3f64.sqrt()).abs() < 1e-12));
+            let inward = limits.vertices.iter().find(|v| v.vertex == VertexId(0)).unwrap().direction;
+            assert!(inward.iter().all(|x| (x - 1.0 / 3f64.sqrt()).abs() < 1e-12), "{inward:?}");
+            assert!(limits.corners.iter().all(|c| (c.degrees - 90.0).abs() < 1e-9 && c.bound > 1.0 - 1e-12));
+            assert!(limits.edges.iter().all(|e| (e.degrees - 90.0).abs() < 1e-9 && (e.hexes - 1.0).abs() < 1e-9));
+        }
+        let inside_out = surface_limits(&surface.inverted(), &points).unwrap();
+        assert!(inside_out.edges.iter().all(|e| (e.degrees - 270.0).abs() < 1e-9));
+        assert!(surface_limits(&surface, &points[..7]).is_none());
+    }
+
+    #[test]
+    fn needles_flat_corners_and_edges_of_length_zero_are_found() {
+        let (surface, mut points) = cube();
+        points[6] = [0.51, 0.51, 1.0];
+        let limits = surface_limits(&surface, &points).unwrap();
+        let worst = limits.corners[0];
+        assert_eq!((worst.vertex, worst.quad), (VertexId(6), QuadId(5)));
+        assert!(worst.degrees > 175.0 && worst.degrees < 180.0 && worst.bound < 0.1);
+        points[6] = [0.4, 0.4, 1.0];
+        let limits = surface_limits(&surface, &points).unwrap();
+        assert!(limits.corners.iter().any(|c| c.degrees > 180.0 && c.vertex == VertexId(6)));
+        points[6] = points[7];
+        let limits = surface_limits(&surface, &points).unwrap();
+        assert_eq!((limits.corners[0].bound, limits.edges[0].degrees), (0.0, 0.0));
+        points = POSITIONS.map(|[x, y, z]| [f64::from(x), f64::from(y) + 10.0 * f64::from(z), f64::from(z)]).to_vec();
+        let limits = surface_limits(&surface, &points).unwrap();
+        assert!(limits.edges[0].degrees < 6.0 && limits.edges[0].hexes < 0.07);
+    }
+}

@@ -1,0 +1,179 @@
+//! Split stars: a second interior edge at surface vertices where a single one cannot be good.
+//!
+//! The corners at a surface vertex v whose hexes share one interior edge are good only if one direction sees all quads of v. On real
+//! surfaces some vertices have none, and no layer of one hex a quad is valid there, whatever lies behind it. Cut the fan of v into two arcs, and
+//! *shrink* the hexes on the quads of one arc (the set A, see [`cells`]): the new hexes that fill the gap give v
+//! a second interior edge, each arc is seen along its own, and two new corners lie between them at the edges where the arcs meet.
+//! Every other surface vertex of A is split as well, so arcs are chosen by what *all* of them can reach, and A may
+//! take in further quads where that helps.
+//!
+//! What a star can reach is computed from the directions of its fixed edges alone ([`hexfill_geometry::climb_star`]), so it says
+//! what positions allow, not what they will be.
+//! Where the hexes at v do not lie one a quad round one edge (meshes of the construction), all hexes at v may be shrunk first, which puts
+//! such a layer there; where that does not help either, a layer under the whole surface.
+//! Related: N. Reberol et al., *Robust topological construction of all-hexahedral boundary layer meshes*, 2023.
+//!
+//! Invariant: boundary quads and the ids of their vertices never change; new vertices follow the old ones.
+
+mod cells;
+mod choose;
+#[cfg(test)]
+mod tests;
+
+use cells::Cells;
+use choose::{Choice, Chooser};
+use hexfill_mesh::{Context, HexMesh, QuadSurface, VertexId};
+
+/// When to split.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct SplitOptions {
+    /// Vertices whose star can reach less than this scaled Jacobian are split, if that helps.
+    pub below: f64,
+    /// A split must raise its vertex by this much at least.
+    pub gain: f64,
+    /// Whether a layer of hexes under the whole surface may be added, where nothing else helps.
+    pub pillow: bool,
+}
+
+impl Default for SplitOptions {
+    fn default() -> Self {
+        Self { below: 0.1, gain: 0.05, pillow: true }
+    }
+}
+
+/// One vertex that was split.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct SplitVertex {
+    /// The surface vertex.
+    pub vertex: VertexId,
+    /// The best worst corner its star could reach before (scaled Jacobian, by directions only).
+    pub before: f64,
+    /// And after.
+    pub after: f64,
+    /// How many hexes that cost.
+    pub hexes: usize,
+}
+
+/// A mesh with split stars.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct SplitStars {
+    /// The mesh: the same boundary, hexes and vertices added.
+    pub mesh: HexMesh,
+    /// The vertices split, in the order of the work.
+    pub splits: Vec<SplitVertex>,
+    /// The vertices whose star still cannot reach [`SplitOptions::below`], ascending, with what it can.
+    pub left: Vec<(VertexId, f64)>,
+    /// Whether a layer under the whole surface was added.
+    pub pillowed: bool,
+}
+
+/// Splits the stars of surface vertices that are too poor, where that helps. See the module page.
+///
+/// `points[v]` is the position of every vertex v on the boundary, in any unit; other entries are not read. Returns `None` if nothing was split
+/// (none is poor, nothing helps, or the boundary is no closed oriented surface with finite positions). Deterministic, for any
+/// number of threads, unless the context cuts it short; then the splits so far are returned.
+///
+/// The time grows with the number of poor vertices, some 10 to 100 ms each.
+pub fn split_stars(
+    mesh: &HexMesh,
+    points: &[[f64; 3]],
+    options: &SplitOptions,
+    context: &Context<'_>,
+) -> Option<SplitStars> {
+    let quads: Vec<[u32; 4]> = mesh.boundary_quads().iter().map(|q| q.map(|v| v.0)).collect();
+    let surface = QuadSurface::try_new(mesh.n_vertices(), &quads).ok().filter(|s| s.reversed().is_empty())?;
+    let placed = |v: &VertexId| points.get(v.index()).is_some_and(|p| p.iter().all(|x| x.is_finite()));
+    if !surface.quads().iter().flatten().all(placed) {
+        return None;
+    }
+    let chooser = Chooser::new(&surface, points, *options);
+    let poor = chooser.vertices_no_direction_serves();
+    let mut cells = Cells::new(mesh);
+    let mut splits = split_all(&chooser, &mut cells, &poor, context);
+    let left = chooser.still_poor(&cells, &poor);
+    let mut pillowed = false;
+    if options.pillow && !left.is_empty() && context.stop().is_none() {
+        // From the start again: splits made without the layer are not needed behind it.
+        let mut layered = Cells::new(mesh);
+        let all: Vec<u32> = (0..mesh.n_hexes() as u32).collect();
+        let skin: Vec<[u32; 4]> = quads;
+        layered.shrink(&all, &skin);
+        let made = split_all(&chooser, &mut layered, &poor, context);
+        let poor_behind = chooser.still_poor(&layered, &poor);
+        let rank = |left: &[(u32, f64)]| (left.iter().filter(|l| l.1 <= 0.0).count(), left.len());
+        if rank(&poor_behind) < rank(&left) && context.stop().is_none() {
+            (cells, splits, pillowed) = (layered, made, true);
+        }
+    }
+    if splits.is_empty() {
+        return None;
+    }
+    let left = chooser.still_poor(&cells, &poor).into_iter().map(|(v, value)| (VertexId(v), value)).collect();
+    Some(SplitStars { mesh: cells.to_mesh().ok()?, splits, left, pillowed })
+}
+
+/// Splits the poor vertices, worst first, until none can be helped.
+fn split_all(chooser: &Chooser<'_>, cells: &mut Cells, poor: &[u32], context: &Context<'_>) -> Vec<SplitVertex> {
+    const PASSES: usize = 3;
+    let mut splits = Vec::new();
+    for _ in 0..PASSES {
+        let mut open = chooser.still_poor(cells, poor);
+        open.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
+        let before = splits.len();
+        for (v, _) in open {
+            if context.stop().is_some() {
+                return splits;
+            }
+            // An earlier split may have helped, or harmed within what is allowed.
+            let value = chooser.value(cells, v);
+            if value >= chooser.options.below {
+                continue;
+            }
+            let n_hexes = cells.n_hexes();
+            let helped = match chooser.best_choice(cells, v) {
+                Some(choice) => {
+                    apply(cells, &choice);
+                    true
+                }
+                None => split_behind_layer(chooser, cells, v),
+            };
+            if helped {
+                let (after, hexes) = (chooser.value(cells, v), cells.n_hexes() - n_hexes);
+                splits.push(SplitVertex { vertex: VertexId(v), before: value, after, hexes });
+            }
+        }
+        if splits.len() == before {
+            break;
+        }
+    }
+    splits
+}
+
+fn apply(cells: &mut Cells, choice: &Choice) {
+    cells.shrink(&choice.set, &choice.skin);
+}
+
+/// Shrinks all hexes at the vertex, so that there is one on each of its quads, then splits; takes both back if the
+/// vertices touched can reach no more than before.
+fn split_behind_layer(chooser: &Chooser<'_>, cells: &mut Cells, v: u32) -> bool {
+    let set = cells.hexes_at(v).to_vec();
+    let skin = cells.skin(&set);
+    if !cells::is_sphere(&skin) {
+        return false;
+    }
+    let before = chooser.total_penalty(cells, &skin);
+    let undo = cells.shrink(&set, &skin);
+    if let Some(choice) = chooser.best_choice(cells, v) {
+        let undo_split = cells.shrink(&choice.set, &choice.skin);
+        let both: Vec<[u32; 4]> = skin.iter().chain(&choice.skin).copied().collect();
+        if chooser.total_penalty(cells, &both) < before && chooser.value(cells, v) >= chooser.options.gain {
+            return true;
+        }
+        cells.undo(&undo_split);
+    }
+    cells.undo(&undo);
+    false
+}

@@ -1,0 +1,227 @@
+//! Which hexes to shrink: the arcs of a vertex's fan, grown by neighbouring quads, ranked by what all touched stars can reach.
+//!
+//! A star's penalty is the cube of what it lacks to [`GOOD`], so the worst of the touched vertices decide and good ones do not count. A
+//! choice is worth the penalty it takes away from all surface vertices it touches, less a little a hex. It may not push a vertex
+//! that was fine below the limit, nor a poor one further down.
+
+use super::SplitOptions;
+use super::cells::{Cells, is_sphere};
+use hexfill_geometry::{Ray, Vector, best_direction, climb_star, cross, direction};
+use hexfill_mesh::{Dart, QuadSurface};
+use rayon::prelude::*;
+
+/// A star that can reach this needs no more.
+const GOOD: f64 = 0.7;
+
+/// What one more hex costs, in penalty.
+const HEX: f64 = 0.001;
+
+/// Arcs that are tried with further quads.
+const GROWN: usize = 6;
+
+/// Quads an arc may take in.
+const REACH: usize = 4;
+
+/// Arcs of more quads round a vertex than this are not all tried: their ends keep to every second, third, ... edge.
+const MOST_ENDS: usize = 16;
+
+/// Stands for the new end of a vertex's new edge.
+const NEW: u32 = u32::MAX;
+
+/// Hexes to shrink.
+#[derive(Clone, Debug)]
+pub(super) struct Choice {
+    /// The hexes, ascending.
+    pub(super) set: Vec<u32>,
+    /// Their facets to the outside.
+    pub(super) skin: Vec<[u32; 4]>,
+    /// The quads of the surface they were taken for.
+    quads: Vec<Dart>,
+    /// The penalty it takes away.
+    worth: f64,
+}
+
+/// The surface and what stars on it can reach.
+pub(super) struct Chooser<'a> {
+    surface: &'a QuadSurface,
+    points: &'a [Vector],
+    /// Per vertex: a dart from it, for those on the surface.
+    dart: Vec<Option<Dart>>,
+    pub(super) options: SplitOptions,
+}
+
+impl<'a> Chooser<'a> {
+    /// For a surface with a finite position at every used vertex.
+    pub(super) fn new(surface: &'a QuadSurface, points: &'a [Vector], options: SplitOptions) -> Self {
+        Self { surface, points, dart: surface.dart_of_vertices(), options }
+    }
+
+    fn is_surface(&self, v: u32) -> bool {
+        self.dart.get(v as usize).is_some_and(|d| d.is_some())
+    }
+
+    /// The vertices at which no single direction reaches the limit, ascending.
+    pub(super) fn vertices_no_direction_serves(&self) -> Vec<u32> {
+        let all: Vec<(u32, Dart)> =
+            self.dart.iter().enumerate().filter_map(|(v, d)| d.map(|d| (v as u32, d))).collect();
+        all.into_par_iter()
+            .with_min_len(256)
+            .filter(|&(v, first)| {
+                let to = |w: u32| self.direction(v, w);
+                let normals: Vec<Vector> = self
+                    .surface
+                    .round_vertex(first)
+                    // The frame (previous edge, next edge, inward) of an outward quad's corner is right-handed.
+                    .map(|d| cross(to(self.origin(d.next().next().next())), to(self.origin(d.next()))))
+                    .collect();
+                best_direction(&normals).value < self.options.below
+            })
+            .map(|(v, _)| v)
+            .collect()
+    }
+
+    fn origin(&self, d: Dart) -> u32 {
+        self.surface.origin(d).0
+    }
+
+    /// The unit direction from v to w; zero, so that every corner on it is worthless, if they lie on one spot.
+    fn direction(&self, v: u32, w: u32) -> Vector {
+        direction(self.points[v as usize], self.points[w as usize]).unwrap_or([0.0; 3])
+    }
+
+    /// What the star of a surface vertex can reach in the mesh as it is.
+    pub(super) fn value(&self, cells: &Cells, v: u32) -> f64 {
+        self.reach(v, &cells.corners_at(v, &[]))
+    }
+
+    /// Of these vertices, ascending, those whose star cannot reach the limit, with what it can.
+    pub(super) fn still_poor(&self, cells: &Cells, vertices: &[u32]) -> Vec<(u32, f64)> {
+        let valued: Vec<(u32, f64)> = vertices.par_iter().map(|&v| (v, self.value(cells, v))).collect();
+        valued.into_iter().filter(|(_, value)| *value < self.options.below).collect()
+    }
+
+    /// The penalties of the surface vertices on some quads, added up.
+    pub(super) fn total_penalty(&self, cells: &Cells, quads: &[[u32; 4]]) -> f64 {
+        self.surface_vertices(quads).into_iter().map(|v| penalty(self.value(cells, v))).sum()
+    }
+
+    fn surface_vertices(&self, quads: &[[u32; 4]]) -> Vec<u32> {
+        let mut all: Vec<u32> = quads.iter().flatten().copied().filter(|&v| self.is_surface(v)).collect();
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+
+    /// What a star with these corners can reach: triples of the other ends of their edges; only ends on the surface are fixed.
+    fn reach(&self, v: u32, corners: &[[u32; 3]]) -> f64 {
+        let mut free: Vec<u32> = corners.iter().flatten().copied().filter(|&w| !self.is_surface(w)).collect();
+        free.sort_unstable();
+        free.dedup();
+        let rays: Vec<[Ray; 3]> = corners
+            .iter()
+            .map(|ends| {
+                ends.map(|w| match free.binary_search(&w) {
+                    Ok(j) => Ray::Free(j),
+                    Err(_) => Ray::Fixed(self.direction(v, w)),
+                })
+            })
+            .collect();
+        climb_star(&rays, free.len()).value
+    }
+
+    /// What the star of v can reach once the set is shrunk.
+    fn reach_after(&self, cells: &Cells, v: u32, set: &[u32], skin: &[[u32; 4]]) -> f64 {
+        let mut corners = cells.corners_at(v, set);
+        for facet in skin {
+            if let Some(i) = facet.iter().position(|&w| w == v) {
+                // The new hex has this facet on top: previous, next, down is right-handed.
+                corners.push([facet[(i + 3) % 4], facet[(i + 1) % 4], NEW]);
+            }
+        }
+        self.reach(v, &corners)
+    }
+
+    /// The best set to shrink for v, if any helps enough.
+    pub(super) fn best_choice(&self, cells: &Cells, v: u32) -> Option<Choice> {
+        let fan: Vec<Dart> = self.surface.round_vertex(self.dart[v as usize]?).collect();
+        let k = fan.len();
+        let step = k.div_ceil(MOST_ENDS);
+        let mut arcs: Vec<Vec<Dart>> = Vec::new();
+        for start in (0..k).step_by(step) {
+            for length in (1..k).step_by(step) {
+                arcs.push((0..length).map(|i| fan[(start + i) % k]).collect());
+            }
+        }
+        let mut found: Vec<Choice> = arcs.into_par_iter().filter_map(|arc| self.judge(cells, v, arc)).collect();
+        let rank = |found: &mut Vec<Choice>| {
+            found.sort_by(|a, b| b.worth.total_cmp(&a.worth).then(a.quads.cmp(&b.quads)));
+        };
+        rank(&mut found);
+        found.truncate(GROWN);
+        let mut found: Vec<Choice> = found.into_par_iter().map(|choice| self.grow(cells, v, choice)).collect();
+        rank(&mut found);
+        found.into_iter().next()
+    }
+
+    /// Takes neighbouring quads in, one at a time, as long as that helps.
+    fn grow(&self, cells: &Cells, v: u32, mut choice: Choice) -> Choice {
+        for _ in 0..REACH {
+            let mut next: Vec<Dart> = Vec::new();
+            let has = |d: Dart| choice.quads.iter().any(|q| q.quad() == d.quad());
+            for &d in &choice.quads {
+                let mut side = d;
+                for _ in 0..4 {
+                    let over = self.surface.twin(side);
+                    if !has(over) && !next.iter().any(|n| n.quad() == over.quad()) {
+                        next.push(over);
+                    }
+                    side = side.next();
+                }
+            }
+            let tried = next.into_iter().filter_map(|d| {
+                let mut quads = choice.quads.clone();
+                quads.push(d);
+                self.judge(cells, v, quads)
+            });
+            // The first of the best.
+            let Some(best) = tried.reduce(|a, b| if b.worth > a.worth { b } else { a }) else { break };
+            if best.worth <= choice.worth {
+                break;
+            }
+            choice = best;
+        }
+        choice
+    }
+
+    /// What shrinking the hexes on these quads is worth; `None` if it cannot be done or does not help v.
+    fn judge(&self, cells: &Cells, v: u32, quads: Vec<Dart>) -> Option<Choice> {
+        let mut set: Vec<u32> = Vec::new();
+        for d in &quads {
+            set.push(cells.owner(self.surface.quad(d.quad()).map(|w| w.0))?);
+        }
+        set.sort_unstable();
+        set.dedup();
+        let skin = cells.skin(&set);
+        let (before, after) = (self.value(cells, v), self.reach_after(cells, v, &set, &skin));
+        if after < before + self.options.gain || !is_sphere(&skin) {
+            return None;
+        }
+        let mut worth = penalty(before) - penalty(after) - HEX * skin.len() as f64;
+        for w in self.surface_vertices(&skin).into_iter().filter(|&w| w != v) {
+            if worth <= 0.0 {
+                // Others may gain, too, but the vertex itself must be worth it.
+                return None;
+            }
+            let (before, after) = (self.value(cells, w), self.reach_after(cells, w, &set, &skin));
+            if after < self.options.below.min(before) {
+                return None;
+            }
+            worth += penalty(before) - penalty(after);
+        }
+        (worth > 0.0).then_some(Choice { set, skin, quads, worth })
+    }
+}
+
+fn penalty(value: f64) -> f64 {
+    (GOOD - value).max(0.0).powi(3)
+}
