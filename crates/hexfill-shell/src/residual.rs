@@ -26,7 +26,7 @@ pub(crate) fn fill_residual(front: &Front, ctx: &Context<'_>) -> Option<Vec<[u32
     if plain.as_ref().is_some_and(|hexes| hexes.len() <= front.hexes().len() + front.n_quads()) {
         return plain;
     }
-    let pillowed = front.pillowed().ok().and_then(|inner| fill_front(&inner, ctx));
+    let pillowed = fill_front(&front.pillowed().0, ctx);
     [plain, pillowed].into_iter().flatten().min_by_key(Vec::len)
 }
 

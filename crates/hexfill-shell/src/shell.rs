@@ -8,6 +8,7 @@ use crate::lift::lift;
 use crate::residual::fill_residual;
 use crate::solve::solve;
 use crate::sweep::{SweepOptions, sweep_front};
+use crate::void::Void;
 use hexfill_mesh::{Context, HexMesh, QuadSurface};
 use rayon::prelude::*;
 
@@ -65,6 +66,10 @@ impl std::fmt::Display for Shelling {
     }
 }
 
+/// Restarts times the square of the quads: what layers may cost.
+const RESTART_WORK: u64 = 4_000_000;
+/// Restarts at least, unless fewer are asked for.
+const MIN_RESTARTS: u64 = 4;
 /// Incomplete sweeps by layers that flips go on from.
 const CONTINUED: usize = 4;
 /// Residuals that are filled.
@@ -82,15 +87,27 @@ pub fn shell(
 ) -> Shelling {
     let wanted = wanted_hexes(surface, points);
     let coarse = compress(surface, &wanted);
+    let fine = uncompressed(surface, &wanted);
+    let is_fine = coarse.surface.n_quads() == surface.n_quads();
     let mut shelling = Shelling { coarse_quads: coarse.surface.n_quads(), left: usize::MAX, ..Shelling::default() };
     for &pillows in &options.pillows {
-        let mut found = complete(&coarse, pillows, options, &mut shelling.left, ctx);
-        if found.is_empty() && coarse.surface.n_quads() < surface.n_quads() && surface.n_quads() <= MOST_FINE {
-            let fine = uncompressed(surface, &wanted);
-            let meshes = by_flips(&fine, pillows, options, &[], &mut shelling.left, ctx);
+        let start = Start::new(&coarse, pillows);
+        let mut meshes = start.complete(options, &mut shelling.left, ctx);
+        let found = keep(&mut shelling.meshes, &coarse, surface, pillows, std::mem::take(&mut meshes), options);
+        if surface.n_quads() > MOST_FINE || ctx.stop().is_some() {
+            continue;
+        }
+        if surface.genus() > 0
+            && let Some(points) = points
+        {
+            // Plugs join chords of all multiplicities, so they need the surface as it is.
+            if let Some(start) = Start::new(&fine, pillows).plugged(points, surface.genus()) {
+                let meshes = start.complete(options, &mut shelling.left, ctx);
+                keep(&mut shelling.meshes, &fine, surface, pillows, meshes, options);
+            }
+        } else if found == 0 && !is_fine {
+            let meshes = Start::new(&fine, pillows).by_flips(options, &[], &mut shelling.left, ctx);
             keep(&mut shelling.meshes, &fine, surface, pillows, meshes, options);
-        } else {
-            keep(&mut shelling.meshes, &coarse, surface, pillows, std::mem::take(&mut found), options);
         }
     }
     shelling
@@ -98,76 +115,89 @@ pub fn shell(
 
 type Hexes = Vec<[u32; 8]>;
 
-/// Complete coarse meshes, by both engines.
-fn complete(
-    coarse: &Coarse,
-    pillows: u32,
-    options: &ShellOptions,
-    left: &mut usize,
-    ctx: &Context<'_>,
-) -> Vec<Hexes> {
-    let sweeps = solve(coarse, pillows, options.restarts, ctx);
-    let (complete, partial): (Vec<_>, Vec<_>) = sweeps.into_iter().partition(|s| s.is_complete());
-    let mut meshes: Vec<Hexes> = complete.into_iter().map(|s| s.void.hexes).collect();
-    if !meshes.is_empty() {
-        *left = 0;
-    }
-    let is_perfect = |h: &Hexes| deviation(coarse, h).is_some_and(|d| d.cost < 1e-3);
-    if meshes.iter().any(is_perfect) {
-        return meshes;
-    }
-    let fronts: Vec<Front> = partial
-        .into_iter()
-        .take(CONTINUED)
-        .filter_map(|s| {
-            let surface: Vec<[u32; 4]> = coarse.surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
-            Front::try_from_parts(s.void.n_vertices, &surface, &s.void.hexes, &s.void.quads).ok()
-        })
-        .collect();
-    meshes.extend(by_flips(coarse, pillows, options, &fronts, left, ctx));
-    meshes
+/// Where sweeps start: the surface, perhaps behind pillows and cut by plugs.
+struct Start<'a> {
+    coarse: &'a Coarse,
+    void: Void,
+    quads: Vec<[u32; 4]>,
 }
 
-/// Complete coarse meshes by flips, from the surface and from `others`.
-fn by_flips(
-    coarse: &Coarse,
-    pillows: u32,
-    options: &ShellOptions,
-    others: &[Front],
-    left: &mut usize,
-    ctx: &Context<'_>,
-) -> Vec<Hexes> {
-    let Ok(mut front) = Front::new(&coarse.surface) else { return Vec::new() };
-    for _ in 0..pillows {
-        let Ok(inner) = front.pillowed() else { return Vec::new() };
-        front = inner;
+impl<'a> Start<'a> {
+    fn new(coarse: &'a Coarse, pillows: u32) -> Self {
+        let mut void = Void::new(coarse);
+        for _ in 0..pillows {
+            void.pillow();
+        }
+        Self { coarse, void, quads: coarse.surface.quads().iter().map(|q| q.map(|v| v.0)).collect() }
     }
-    let starts: Vec<(&Front, u64)> =
-        (0..options.seeds).map(|seed| (&front, seed)).chain(others.iter().map(|f| (f, 0))).collect();
-    let fronts: Vec<Front> = starts
-        .into_par_iter()
-        .map(|(front, seed)| {
-            let mut front = front.clone();
-            let quiet = Context { progress: None, ..*ctx };
-            sweep_front(&mut front, &SweepOptions { seed, ..SweepOptions::default() }, &quiet);
-            front
-        })
-        .collect();
-    let smallest = fronts.iter().map(Front::n_quads).min().unwrap_or(0);
-    if smallest > 0 && smallest < usize::MAX {
+
+    /// This start with all handles cut; `None` if one is not. `points` are those of the surface, which is not compressed.
+    fn plugged(self, points: &[[f64; 3]], genus: u64) -> Option<Self> {
+        // Pillows copy the surface vertex by vertex.
+        let mut near = points.to_vec();
+        let n = points.len();
+        let mut origin = vec![u32::MAX; self.void.n_vertices as usize];
+        (0..n).for_each(|v| origin[v] = v as u32);
+        for hex in &self.void.hexes {
+            (0..4).for_each(|i| origin[hex[i] as usize] = origin[hex[i + 4] as usize]);
+        }
+        near.extend(origin[n..].iter().map(|&v| points[v as usize]));
+        let mut front = self.void.to_front(&self.quads)?;
+        for _ in 0..genus {
+            front = front.plug(&mut near)?;
+        }
+        Some(Self { void: self.void.after(&front)?, ..self })
+    }
+
+    /// Complete coarse meshes, by both engines.
+    fn complete(&self, options: &ShellOptions, left: &mut usize, ctx: &Context<'_>) -> Vec<Hexes> {
+        let n = self.void.quads.len() as u64;
+        let restarts = (RESTART_WORK / (n * n)).clamp(MIN_RESTARTS.min(options.restarts), options.restarts);
+        let sweeps = solve(&self.void, restarts, ctx);
+        let (complete, partial): (Vec<_>, Vec<_>) = sweeps.into_iter().partition(|s| s.is_complete());
+        let mut meshes: Vec<Hexes> = complete.into_iter().map(|s| s.void.hexes).collect();
+        if !meshes.is_empty() {
+            *left = 0;
+        }
+        let is_perfect = |h: &Hexes| deviation(self.coarse, h).is_some_and(|d| d.cost < 1e-3);
+        if meshes.iter().any(is_perfect) {
+            return meshes;
+        }
+        let fronts: Vec<Front> =
+            partial.into_iter().take(CONTINUED).filter_map(|s| s.void.to_front(&self.quads)).collect();
+        meshes.extend(self.by_flips(options, &fronts, left, ctx));
+        meshes
+    }
+
+    /// Complete coarse meshes by flips, from the start and from `others`.
+    fn by_flips(&self, options: &ShellOptions, others: &[Front], left: &mut usize, ctx: &Context<'_>) -> Vec<Hexes> {
+        let Some(front) = self.void.to_front(&self.quads) else { return Vec::new() };
+        let starts: Vec<(&Front, u64)> =
+            (0..options.seeds).map(|seed| (&front, seed)).chain(others.iter().map(|f| (f, 0))).collect();
+        let mut fronts: Vec<Front> = starts
+            .into_par_iter()
+            .map(|(front, seed)| {
+                let mut front = front.clone();
+                let quiet = Context { progress: None, ..*ctx };
+                sweep_front(&mut front, &SweepOptions { seed, ..SweepOptions::default() }, &quiet);
+                front
+            })
+            .collect();
+        fronts.sort_by_key(Front::n_quads);
+        let smallest = fronts.first().map_or(usize::MAX, Front::n_quads);
+        if smallest == 0 {
+            *left = 0;
+            return fronts.into_iter().filter(|f| f.n_quads() == 0).map(|f| f.hexes().to_vec()).collect();
+        }
         // Nothing closed: the smallest residuals are filled.
-        let mut order: Vec<&Front> = fronts.iter().collect();
-        order.sort_by_key(|f| f.n_quads());
-        order.truncate(RESIDUALS);
-        let filled: Vec<Hexes> = order.into_par_iter().filter_map(|front| fill_residual(front, ctx)).collect();
+        fronts.truncate(RESIDUALS);
+        let filled: Vec<Hexes> = fronts.par_iter().filter_map(|front| fill_residual(front, ctx)).collect();
         *left = if filled.is_empty() { smallest.min(*left) } else { 0 };
-        return filled;
+        filled
     }
-    *left = fronts.iter().map(Front::n_quads).fold(*left, usize::min);
-    fronts.into_iter().filter(|f| f.n_quads() == 0).map(|f| f.hexes().to_vec()).collect()
 }
 
-/// Lifts those that no other beats in both cost and hexes.
+/// Lifts those that no other beats in both cost and hexes; returns how many.
 fn keep(
     kept: &mut Vec<Shelled>,
     coarse: &Coarse,
@@ -175,7 +205,8 @@ fn keep(
     pillows: u32,
     meshes: Vec<Hexes>,
     options: &ShellOptions,
-) {
+) -> usize {
+    let before = kept.len();
     let mut measured: Vec<(Deviation, Hexes)> =
         meshes.into_iter().filter_map(|h| deviation(coarse, &h).map(|d| (d, h))).collect();
     // Stable: first come, first served among equals.
@@ -196,4 +227,5 @@ fn keep(
         let Ok(mesh) = HexMesh::try_new(n as usize, &fine) else { continue };
         kept.push(Shelled { mesh, cost: d.cost, pillows });
     }
+    kept.len() - before
 }

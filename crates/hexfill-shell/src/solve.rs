@@ -4,7 +4,6 @@
 //! by a random factor; what comes out is ranked by (cost, hexes after lifting, number of the restart), so the result does
 //! not depend on the number of threads.
 
-use crate::compress::Coarse;
 use crate::layer::{Move, Ring, consider, make, rings};
 use crate::void::{Void, next, prev};
 use hexfill_mesh::{Context, Random};
@@ -18,9 +17,8 @@ pub(crate) struct Sweep {
     pub void: Void,
     /// Sum of the costs of its moves.
     pub cost: f32,
-    /// Hexes after lifting.
+    /// Hexes its moves took, after lifting.
     pub fine_hexes: u64,
-    pub pillows: u32,
     restart: u64,
 }
 
@@ -44,14 +42,10 @@ const MOST_PAIRED: usize = 160;
 /// Edges that want fewer hexes than this bound the patches that may be a side.
 const CREASE: f32 = 1.5;
 
-/// The sweeps of all restarts, best first, at most one for each (cost, hexes).
-pub(crate) fn solve(coarse: &Coarse, pillows: u32, restarts: u64, ctx: &Context<'_>) -> Vec<Sweep> {
-    let mut start = Void::new(coarse);
-    for _ in 0..pillows {
-        start.pillow();
-    }
+/// The sweeps of all restarts from a void, best first; of the complete ones those that no other beats in both cost and hexes.
+pub(crate) fn solve(start: &Void, restarts: u64, ctx: &Context<'_>) -> Vec<Sweep> {
     let mut sweeps: Vec<Sweep> =
-        (0..restarts).into_par_iter().filter_map(|restart| sweep(&start, pillows, restart, ctx)).collect();
+        (0..restarts).into_par_iter().filter_map(|restart| sweep(start, restart, ctx)).collect();
     sweeps.sort_by(|a, b| {
         let ((qa, ca, ha, ra), (qb, cb, hb, rb)) = (a.rank(), b.rank());
         qa.cmp(&qb).then(ca.total_cmp(&cb)).then(ha.cmp(&hb)).then(ra.cmp(&rb))
@@ -67,12 +61,10 @@ pub(crate) fn solve(coarse: &Coarse, pillows: u32, restarts: u64, ctx: &Context<
 }
 
 /// One sweep; `None` if it was stopped.
-fn sweep(start: &Void, pillows: u32, restart: u64, ctx: &Context<'_>) -> Option<Sweep> {
+fn sweep(start: &Void, restart: u64, ctx: &Context<'_>) -> Option<Sweep> {
     let mut random = Random::new(ctx.seed.wrapping_mul(0x1_0001).wrapping_add(restart));
     let per_hex = PER_HEX[(restart % PER_HEX.len() as u64) as usize];
-    let base: u64 = (0..start.quads.len()).map(|q| area(start, q as u32)).sum();
-    let mut sweep =
-        Sweep { void: start.clone(), cost: 0.0, fine_hexes: u64::from(pillows) * base, pillows, restart };
+    let mut sweep = Sweep { void: start.clone(), cost: 0.0, fine_hexes: 0, restart };
     while !sweep.is_complete() {
         if ctx.stop().is_some() {
             return None;
@@ -93,10 +85,6 @@ fn sweep(start: &Void, pillows: u32, restart: u64, ctx: &Context<'_>) -> Option<
         sweep.fine_hexes += chosen.fine_hexes;
     }
     Some(sweep)
-}
-
-fn area(void: &Void, q: u32) -> u64 {
-    u64::from(void.length[4 * q as usize]) * u64::from(void.length[4 * q as usize + 1])
 }
 
 /// All moves that may be possible now, in a fixed order.

@@ -5,7 +5,9 @@
 //! edge. Darts are `4 * quad + side`.
 
 use crate::compress::Coarse;
+use crate::front::Front;
 use crate::kinds::PairKinds;
+use hexfill_mesh::cube::EDGES;
 use rustc_hash::FxHashMap;
 
 /// How much less than its angle says an edge inside a pillow differs from flat: the pillow's hexes take up the rest.
@@ -99,6 +101,44 @@ impl Void {
         for w in &mut self.wanted {
             *w = 2.0 + SOFTENED * (*w - 2.0);
         }
+    }
+
+    /// The void as a front that flips and plugs work on; `surface` are the quads that are never merged.
+    pub fn to_front(&self, surface: &[[u32; 4]]) -> Option<Front> {
+        Front::try_from_parts(self.n_vertices, surface, &self.hexes, &self.quads).ok()
+    }
+
+    /// This void after hexes were added to it as a front without merging any vertices: an edge of the old front wants what the new
+    /// hexes at it leave, a new one 4 hexes in all. Every edge that is new has length 1.
+    pub fn after(&self, front: &Front) -> Option<Self> {
+        let mut wanted: FxHashMap<(u32, u32), f32> = FxHashMap::default();
+        for d in 0..self.n_darts() {
+            wanted.insert((self.origin(d), self.target(d)), self.wanted[d as usize]);
+        }
+        let key = |a: u32, b: u32| (a.min(b), a.max(b));
+        let mut placed: FxHashMap<(u32, u32), f32> = FxHashMap::default();
+        let mut void = self.clone();
+        for hex in &front.hexes()[self.hexes.len()..] {
+            for [i, j] in EDGES {
+                *placed.entry(key(hex[i], hex[j])).or_insert(0.0) += 1.0;
+            }
+            if !void.pairs.put_hex(hex) {
+                return None;
+            }
+        }
+        void.hexes = front.hexes().to_vec();
+        void.n_vertices = front.n_vertices();
+        let quads = front.quads();
+        let edges = quads.iter().flat_map(|q| (0..4).map(|i| (q[i], q[(i + 1) & 3])));
+        let left = edges
+            .map(|(a, b)| {
+                let before = wanted.get(&(a, b)).or_else(|| wanted.get(&(b, a))).copied().unwrap_or(4.0);
+                before - placed.get(&key(a, b)).copied().unwrap_or(0.0)
+            })
+            .collect();
+        let length = vec![1; 4 * quads.len()];
+        void.set_front(quads, left, length)?;
+        Some(void)
     }
 
     /// Replaces the front. `edges` has for every dart of the new quads what is wanted there and its length.
