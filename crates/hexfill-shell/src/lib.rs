@@ -11,5 +11,5 @@ mod test_surfaces;
 mod zip;
 
 pub use front::{Front, FrontError, Mark};
-pub use sweep::{SweepOptions, Swept, sweep, sweep_front};
+pub use sweep::{EdgeWant, SweepOptions, Swept, sweep, sweep_front};
 pub use zip::Refused;
