@@ -47,6 +47,8 @@ enum Change {
     Hex,
     /// A vertex was pushed.
     Vertex,
+    /// An empty slot was pushed.
+    Slot,
     /// The star of a vertex grew; its length before.
     Star(u32, u32),
     Pair(OldPair),
@@ -375,6 +377,25 @@ impl Front {
         }
     }
 
+    /// Puts a quad into an empty slot, or a new one; its slot. Twins and degrees are the caller's task.
+    pub(crate) fn put_quad(&mut self, slot: Option<u32>, quad: [u32; 4]) -> u32 {
+        let slot = slot.unwrap_or_else(|| {
+            self.journal.push(Change::Slot);
+            self.origin.extend([NONE; 4]);
+            self.twin.extend([NONE; 4]);
+            if self.has_wants() {
+                self.want.extend([0.0; 4]);
+            }
+            self.n_slots() - 1
+        });
+        self.journal.push(Change::Quads(self.n_quads));
+        self.n_quads += 1;
+        for (i, v) in quad.into_iter().enumerate() {
+            self.set_origin(4 * slot + i as u32, v);
+        }
+        slot
+    }
+
     /// A new interior vertex, not yet on the front.
     pub(crate) fn push_vertex(&mut self) -> u32 {
         self.journal.push(Change::Vertex);
@@ -453,6 +474,12 @@ impl Front {
                 Change::DartOf(v, d) => self.dart_of[v as usize] = d,
                 Change::Quads(n) => self.n_quads = n,
                 Change::Corner(h, corner, v) => self.hexes[h as usize][usize::from(corner)] = v,
+                Change::Slot => {
+                    let n = self.origin.len() - 4;
+                    self.origin.truncate(n);
+                    self.twin.truncate(n);
+                    self.want.truncate(n);
+                }
                 Change::Hex => {
                     self.hexes.pop();
                 }

@@ -1,6 +1,7 @@
 //! Shelling: closed quad surfaces of any size swept inward by their own dual curves, until nothing is left to fill.
 
 mod front;
+mod glue;
 mod inside;
 mod lens;
 mod pairs;
@@ -11,5 +12,6 @@ mod test_surfaces;
 mod zip;
 
 pub use front::{Front, FrontError, Mark};
+pub use glue::Patch;
 pub use sweep::{EdgeWant, SweepOptions, Swept, sweep, sweep_front};
 pub use zip::Refused;

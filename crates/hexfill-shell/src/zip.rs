@@ -34,16 +34,16 @@ pub enum Refused {
 
 /// What the zips of one flip have to remember until the last of them.
 #[derive(Default)]
-struct Pending {
+pub(crate) struct Pending {
     /// Vertices whose degree fell.
-    queue: Vec<u32>,
+    pub(crate) queue: Vec<u32>,
     /// Hexes whose pairs are out of the table.
-    hexes: Vec<u32>,
+    pub(crate) hexes: Vec<u32>,
     /// One entry for each front edge too many between two vertices.
-    double: Vec<[u32; 2]>,
+    pub(crate) double: Vec<[u32; 2]>,
     /// Darts of edges that stay on the front with fewer hexes wanted.
-    rim: Vec<u32>,
-    cost: f32,
+    pub(crate) rim: Vec<u32>,
+    pub(crate) cost: f32,
 }
 
 impl Pending {
@@ -76,6 +76,11 @@ impl Front {
     fn flip_and_zip(&mut self, v: u32) -> Result<f32, Refused> {
         let mut pending = Pending::default();
         self.push_over(v, &mut pending);
+        self.zip_all(pending)
+    }
+
+    /// Zips until no vertex of degree 2 is left, and checks the whole; the cost.
+    pub(crate) fn zip_all(&mut self, mut pending: Pending) -> Result<f32, Refused> {
         while let Some(u) = pending.queue.pop() {
             match self.degree(u) {
                 1 => return Err(Refused::Loop),
