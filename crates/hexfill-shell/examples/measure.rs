@@ -1,7 +1,7 @@
 //! Measures sweeps: `cargo run --release -p hexfill-shell --example measure -- SURFACE.obj|box:N|refined:N ... [pillows=K] [seed=S]`.
 
 use hexfill_check::{Judged, Level, judge};
-use hexfill_mesh::generate::{octagonal_spindle, refined, schneiders_pyramid, voxel_surface};
+use hexfill_mesh::generate::{octagonal_spindle, random_sphere, refined, schneiders_pyramid, voxel_surface};
 use hexfill_mesh::{Context, QuadSurface, chords};
 use hexfill_shell::{SweepOptions, sweep};
 
@@ -35,6 +35,7 @@ fn main() {
                 continue;
             }
             Some(("box", n)) => (voxel_surface([number(n); 3], |_| true).unwrap(), Vec::new()),
+            Some(("random", n)) => (random_sphere(number(n), options.seed).unwrap(), Vec::new()),
             Some(("pyramid", n)) => (refined(&schneiders_pyramid(), number(n) as u32).unwrap(), Vec::new()),
             Some(("spindle", n)) => (refined(&octagonal_spindle(), number(n) as u32).unwrap(), Vec::new()),
             _ => read_obj(&std::fs::read_to_string(&argument).unwrap()),

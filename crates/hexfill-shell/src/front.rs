@@ -40,12 +40,15 @@ enum Change {
     Twin(u32, u32),
     Degree(u32, u32),
     DartOf(u32, u32),
+    Want(u32, f32),
     Quads(u32),
     Corner(u32, u8, u32),
     /// A hex was pushed.
     Hex,
     /// A vertex was pushed.
     Vertex,
+    /// An empty slot was pushed.
+    Slot,
     /// The star of a vertex grew; its length before.
     Star(u32, u32),
     Pair(OldPair),
@@ -80,6 +83,8 @@ pub enum FrontError {
 pub struct Front {
     origin: Vec<u32>,
     twin: Vec<u32>,
+    /// Per dart: how many hexes are still wanted round its edge; empty if nothing is wanted. Twins have the same.
+    want: Vec<f32>,
     n_quads: u32,
     /// Per vertex: number of front quads round it.
     degree: Vec<u32>,
@@ -128,6 +133,7 @@ impl Front {
         let mut state = Self {
             origin: Vec::new(),
             twin: Vec::new(),
+            want: Vec::new(),
             n_quads: front.len() as u32,
             degree: vec![0; n],
             dart_of: vec![NONE; n],
@@ -291,7 +297,43 @@ impl Front {
         all
     }
 
+    /// States how many hexes are wanted round each front edge: on the surface its angle / 90 degrees, inside 4 less those that are there.
+    pub fn set_wants(&mut self, want: impl Fn(u32, u32) -> f32) {
+        self.want = vec![0.0; self.origin.len()];
+        for q in 0..self.n_slots() {
+            if self.is_quad(q) {
+                for d in 4 * q..4 * q + 4 {
+                    let t = self.twin(d);
+                    if d < t {
+                        let wanted = want(self.origin(d), self.target(d));
+                        let wanted = if wanted.is_finite() { wanted } else { 2.0 };
+                        (self.want[d as usize], self.want[t as usize]) = (wanted, wanted);
+                    }
+                }
+            }
+        }
+    }
+
+    /// How many hexes are still wanted round the edge of a dart.
+    #[inline]
+    pub(crate) fn want(&self, d: u32) -> f32 {
+        self.want[d as usize]
+    }
+
+    /// Whether wants were stated.
+    pub(crate) fn has_wants(&self) -> bool {
+        !self.want.is_empty()
+    }
+
     // Journalled changes.
+
+    /// Sets what is wanted round the edge of a dart.
+    pub(crate) fn set_want(&mut self, d: u32, want: f32) {
+        for d in [d, self.twin(d)] {
+            self.journal.push(Change::Want(d, self.want[d as usize]));
+            self.want[d as usize] = want;
+        }
+    }
 
     /// A place to come back to.
     pub fn mark(&self) -> Mark {
@@ -333,6 +375,25 @@ impl Front {
         for i in 0..4 {
             self.set_origin(4 * slot + i, NONE);
         }
+    }
+
+    /// Puts a quad into an empty slot, or a new one; its slot. Twins and degrees are the caller's task.
+    pub(crate) fn put_quad(&mut self, slot: Option<u32>, quad: [u32; 4]) -> u32 {
+        let slot = slot.unwrap_or_else(|| {
+            self.journal.push(Change::Slot);
+            self.origin.extend([NONE; 4]);
+            self.twin.extend([NONE; 4]);
+            if self.has_wants() {
+                self.want.extend([0.0; 4]);
+            }
+            self.n_slots() - 1
+        });
+        self.journal.push(Change::Quads(self.n_quads));
+        self.n_quads += 1;
+        for (i, v) in quad.into_iter().enumerate() {
+            self.set_origin(4 * slot + i as u32, v);
+        }
+        slot
     }
 
     /// A new interior vertex, not yet on the front.
@@ -408,10 +469,17 @@ impl Front {
             match self.journal.pop().expect("longer than the mark") {
                 Change::Origin(d, v) => self.origin[d as usize] = v,
                 Change::Twin(d, t) => self.twin[d as usize] = t,
+                Change::Want(d, want) => self.want[d as usize] = want,
                 Change::Degree(v, degree) => self.degree[v as usize] = degree,
                 Change::DartOf(v, d) => self.dart_of[v as usize] = d,
                 Change::Quads(n) => self.n_quads = n,
                 Change::Corner(h, corner, v) => self.hexes[h as usize][usize::from(corner)] = v,
+                Change::Slot => {
+                    let n = self.origin.len() - 4;
+                    self.origin.truncate(n);
+                    self.twin.truncate(n);
+                    self.want.truncate(n);
+                }
                 Change::Hex => {
                     self.hexes.pop();
                 }
@@ -445,6 +513,7 @@ impl Front {
                     (self.target(t), self.origin(t)),
                     "twins run opposite ways"
                 );
+                assert!(!self.has_wants() || self.want(d) == self.want(t));
                 assert!(edges.insert((self.origin(d), self.target(d))), "one front edge a pair");
                 degree[self.origin(d) as usize] += 1;
             }
@@ -491,6 +560,6 @@ impl Front {
         (&self.origin, &self.twin, self.n_quads, &self.degree, &self.dart_of)
             == (&other.origin, &other.twin, other.n_quads, &other.degree, &other.dart_of)
             && (&self.fixed, &self.hexes, &self.star) == (&other.fixed, &other.hexes, &other.star)
-            && self.pairs == other.pairs
+            && (&self.pairs, &self.want) == (&other.pairs, &other.want)
     }
 }

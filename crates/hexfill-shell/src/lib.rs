@@ -8,6 +8,7 @@ mod angles;
 mod compress;
 mod deviation;
 mod front;
+mod glue;
 mod inside;
 mod kinds;
 mod layer;
@@ -27,7 +28,9 @@ mod zip;
 mod test_surfaces;
 
 pub use front::{Front, FrontError, Mark};
+pub use glue::Patch;
 pub use shell::{ShellOptions, Shelled, Shelling, shell};
 pub use split_star::{SplitOptions, SplitStars, SplitVertex, split_stars};
+pub use sweep::{EdgeWant, SweepOptions, Swept, sweep, sweep_front};
 pub use sweep::{SweepOptions, Swept, sweep, sweep_front};
 pub use zip::Refused;

@@ -2,7 +2,7 @@
 
 use crate::sweep::Swept;
 use hexfill_check::{Judged, Level, judge};
-use hexfill_mesh::generate::torus;
+use hexfill_mesh::generate::{torus, voxel_surface};
 use hexfill_mesh::{Context, QuadSurface};
 
 /// A torus of `n` quads round the axis and `m` round the tube, facing outward.
@@ -51,3 +51,39 @@ pub(crate) fn judged(surface: &QuadSurface, swept: &Swept) -> usize {
     assert_eq!(2 * hexfill_mesh::euler_characteristic(&mesh), surface.euler_characteristic());
     swept.hexes.len()
 }
+
+/// The boundary of the filled cells of a grid, and how many hexes of the grid lie round each edge.
+pub(crate) fn voxels(size: [usize; 3], filled: impl Fn([usize; 3]) -> bool) -> Option<(QuadSurface, Angles)> {
+    use hexfill_mesh::cube::{FACETS, POSITIONS};
+    let inside = |p: [i64; 3]| (0..3).all(|k| (0..size[k] as i64).contains(&p[k])) && filled(p.map(|x| x as usize));
+    let mut ids = std::collections::BTreeMap::new();
+    let mut around = std::collections::BTreeMap::new();
+    for z in 0..size[2] as i64 {
+        for y in 0..size[1] as i64 {
+            for x in (0..size[0] as i64).filter(|&x| inside([x, y, z])) {
+                let corner = |k: usize| [0, 1, 2].map(|c| [x, y, z][c] + i64::from(POSITIONS[k][c]));
+                for (f, facet) in FACETS.iter().enumerate() {
+                    let mut beside = [x, y, z];
+                    beside[f / 2] += if f % 2 == 0 { -1 } else { 1 };
+                    for &k in facet.iter().filter(|_| !inside(beside)) {
+                        let next = ids.len() as u32;
+                        ids.entry(corner(k)).or_insert(next);
+                    }
+                }
+                for [i, j] in hexfill_mesh::cube::EDGES {
+                    let (a, b) = (corner(i), corner(j));
+                    *around.entry((a.min(b), a.max(b))).or_insert(0.0f32) += 1.0;
+                }
+            }
+        }
+    }
+    let surface = voxel_surface(size, filled).ok()?;
+    let angles = around.into_iter().filter_map(|((a, b), n)| {
+        let (a, b) = (*ids.get(&a)?, *ids.get(&b)?);
+        Some(((a.min(b), a.max(b)), n))
+    });
+    Some((surface, angles.collect()))
+}
+
+/// Angles / 90 degrees of edges.
+pub(crate) type Angles = std::collections::BTreeMap<(u32, u32), f32>;

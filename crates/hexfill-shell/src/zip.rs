@@ -8,6 +8,9 @@
 //! Taken back as a whole are flips where a zip would leave degree 1 (a chord with a loop of one crossing), merge two vertices of the surface, or
 //! split the void, and those that break rule R2 (the pair table, after the last zip) or leave two edges between the same two vertices.
 //! The last is counted: merging s and t makes one edge pair of each common neighbour, and only gluing the two front edges makes it one edge.
+//!
+//! Where wants are stated (r hexes still wanted round each front edge), a flip has a cost: the sum of (r - 1)^2 over the edges the hex buries, of r^2
+//! over those that a zip buries, and of max(0, 1 - r)^2 over the edges at its rim, which lost one and need one more at least.
 
 use crate::front::{Front, NONE, next, opposite, prev};
 
@@ -31,13 +34,16 @@ pub enum Refused {
 
 /// What the zips of one flip have to remember until the last of them.
 #[derive(Default)]
-struct Pending {
+pub(crate) struct Pending {
     /// Vertices whose degree fell.
-    queue: Vec<u32>,
+    pub(crate) queue: Vec<u32>,
     /// Hexes whose pairs are out of the table.
-    hexes: Vec<u32>,
+    pub(crate) hexes: Vec<u32>,
     /// One entry for each front edge too many between two vertices.
-    double: Vec<[u32; 2]>,
+    pub(crate) double: Vec<[u32; 2]>,
+    /// Darts of edges that stay on the front with fewer hexes wanted.
+    pub(crate) rim: Vec<u32>,
+    pub(crate) cost: f32,
 }
 
 impl Pending {
@@ -51,11 +57,11 @@ impl Pending {
 }
 
 impl Front {
-    /// Glues a hex on the three quads round `v` and zips. The front is unchanged if the flip is refused.
+    /// Glues a hex on the three quads round `v` and zips; its cost, 0 if no wants are stated. The front is unchanged if the flip is refused.
     ///
     /// # Errors
     /// [`Refused`].
-    pub fn flip(&mut self, v: u32) -> Result<(), Refused> {
+    pub fn flip(&mut self, v: u32) -> Result<f32, Refused> {
         if v >= self.n_vertices() || self.degree(v) != 3 {
             return Err(Refused::NotDegreeThree);
         }
@@ -67,9 +73,14 @@ impl Front {
         result
     }
 
-    fn flip_and_zip(&mut self, v: u32) -> Result<(), Refused> {
+    fn flip_and_zip(&mut self, v: u32) -> Result<f32, Refused> {
         let mut pending = Pending::default();
         self.push_over(v, &mut pending);
+        self.zip_all(pending)
+    }
+
+    /// Zips until no vertex of degree 2 is left, and checks the whole; the cost.
+    pub(crate) fn zip_all(&mut self, mut pending: Pending) -> Result<f32, Refused> {
         while let Some(u) = pending.queue.pop() {
             match self.degree(u) {
                 1 => return Err(Refused::Loop),
@@ -82,7 +93,16 @@ impl Front {
         }
         pending.hexes.sort_unstable();
         pending.hexes.dedup();
-        if pending.hexes.into_iter().all(|h| self.add_pairs(h)) { Ok(()) } else { Err(Refused::Improper) }
+        if !pending.hexes.into_iter().all(|h| self.add_pairs(h)) {
+            return Err(Refused::Improper);
+        }
+        let mut rim = pending.rim;
+        rim.retain(|&d| self.is_quad(d / 4));
+        rim.iter_mut().for_each(|d| *d = (*d).min(self.twin(*d)));
+        rim.sort_unstable();
+        rim.dedup();
+        let lacking = |&d: &u32| (1.0 - self.want(d)).max(0.0).powi(2);
+        Ok(pending.cost + rim.iter().map(lacking).sum::<f32>())
     }
 
     /// The hex and its three facets, before any zip.
@@ -97,6 +117,7 @@ impl Front {
         let [a, b, c] = darts.map(|d| self.target(d));
         let [x, y, z] = darts.map(|d| self.target(next(d)));
         let outer = darts.map(|d| self.twin(next(d)));
+        let wants = self.has_wants().then(|| darts.map(|d| [d, next(d), opposite(d)].map(|d| self.want(d))));
         let w = self.push_vertex();
         pending.hexes.push(self.push_hex([v, b, x, a, c, y, w, z]));
         // Slot of (v, a, x, b): v->a, a->x, x->b, b->v become y->w, w->x, x->b, b->y.
@@ -113,6 +134,16 @@ impl Front {
             let after = (i + 1) % 3;
             self.glue(prev(darts[i]), outer[after]);
             self.glue(darts[i], next(darts[after]));
+        }
+        if let Some(wants) = wants {
+            for i in 0..3 {
+                pending.cost += (wants[i][0] - 1.0).powi(2);
+                self.set_want(prev(darts[i]), wants[(i + 1) % 3][1] - 1.0);
+                self.set_want(opposite(darts[i]), wants[i][2] - 1.0);
+                self.set_want(darts[i], 3.0);
+                let rim = [prev(darts[i]), opposite(darts[i])];
+                pending.rim.extend(rim.into_iter().flat_map(|d| [d, self.twin(d)]));
+            }
         }
         self.set_degree(v, 0);
         self.set_dart_of(v, NONE);
@@ -159,15 +190,27 @@ impl Front {
         self.remove_quad(two / 4);
         self.set_degree(u, 0);
         self.set_dart_of(u, NONE);
+        let wants = self.has_wants();
+        if wants {
+            pending.cost += self.want(one).powi(2) + self.want(two).powi(2);
+        }
         let mut dart_of_kept = NONE;
         for (end, closed, from_end, to_end) in [(p, p_closed, p_t, s_p), (q, q_closed, q_s, t_q)] {
             self.set_degree(end, self.degree(end) - 2);
             if closed {
                 self.set_dart_of(end, NONE);
+                if wants {
+                    pending.cost += self.want(from_end).powi(2);
+                }
                 continue;
             }
             // Two front edges become one.
             self.glue(from_end, to_end);
+            if wants {
+                // Each wanted 4 less its hexes, or one of them an angle of the surface less its hexes.
+                self.set_want(from_end, self.want(from_end) + self.want(to_end) - 4.0);
+                pending.rim.push(from_end);
+            }
             let edge = [kept.min(end), kept.max(end)];
             match pending.double.iter().position(|&e| e == edge) {
                 Some(i) => {
@@ -235,7 +278,7 @@ mod tests {
         let mut front = Front::new(&cube_surface()).unwrap();
         front.debug_check();
         let before = front.clone();
-        assert_eq!(front.flip(0), Ok(()));
+        assert_eq!(front.flip(0), Ok(0.0));
         front.debug_check();
         assert_eq!((front.n_quads(), front.hexes().len()), (0, 1));
         assert_eq!(front.neighbours(0).len(), 3);
@@ -247,7 +290,7 @@ mod tests {
     fn a_bar_closes_with_its_voxels() {
         let mut front = Front::new(&voxel_surface([3, 1, 1], |_| true).unwrap()).unwrap();
         while let Some(v) = (0..front.n_vertices()).find(|&v| front.degree(v) == 3) {
-            assert_eq!(front.flip(v), Ok(()));
+            assert_eq!(front.flip(v), Ok(0.0));
             front.debug_check();
         }
         assert_eq!((front.n_quads(), front.hexes().len()), (0, 3));
@@ -260,6 +303,9 @@ mod tests {
         let mut refusals = std::collections::BTreeSet::new();
         for surface in surfaces {
             let Ok(mut front) = Front::new(&surface) else { continue };
+            if surface.n_quads() % 2 == 0 {
+                front.set_wants(|a, b| ((a * b + a + b) % 4) as f32);
+            }
             for round in 0..20 {
                 let before = front.clone();
                 let mark = front.mark();
@@ -268,7 +314,7 @@ mod tests {
                     let one = front.clone();
                     let one_mark = front.mark();
                     match front.flip((v * 7 + round) % front.n_vertices()) {
-                        Ok(()) => {
+                        Ok(_) => {
                             front.debug_check();
                             let after = front.clone();
                             front.take_back(one_mark);
