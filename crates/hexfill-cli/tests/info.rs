@@ -1,4 +1,4 @@
-//! `hexfill info` on surfaces: whether a hex mesh exists, why not, and the certificate as a file.
+//! `hexfill info` on surfaces: whether a hex mesh exists, why not, the certificate as a file, and what positions allow.
 
 mod common;
 
@@ -114,4 +114,80 @@ fn quads_that_share_too_much_are_listed() {
     assert_eq!(found["hex_mesh"], "none");
     assert_eq!(found["improper_pairs"], 3);
     assert_eq!(found["first_improper_pairs"][0], serde_json::json!([5, 6]));
+}
+
+/// The boundary of unit cubes as OBJ text, each corner moved by `f`.
+fn voxels(filled: &[[i32; 3]], f: impl Fn([f64; 3]) -> [f64; 3]) -> String {
+    const SIDES: [([i32; 3], [[i32; 3]; 4]); 6] = [
+        ([-1, 0, 0], [[0, 0, 0], [0, 0, 1], [0, 1, 1], [0, 1, 0]]),
+        ([1, 0, 0], [[1, 0, 0], [1, 1, 0], [1, 1, 1], [1, 0, 1]]),
+        ([0, -1, 0], [[0, 0, 0], [1, 0, 0], [1, 0, 1], [0, 0, 1]]),
+        ([0, 1, 0], [[0, 1, 0], [0, 1, 1], [1, 1, 1], [1, 1, 0]]),
+        ([0, 0, -1], [[0, 0, 0], [0, 1, 0], [1, 1, 0], [1, 0, 0]]),
+        ([0, 0, 1], [[0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]]),
+    ];
+    let add = |a: [i32; 3], b: [i32; 3]| [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
+    let mut points: Vec<[i32; 3]> = Vec::new();
+    let mut faces = String::new();
+    for &cell in filled {
+        for (to, corners) in SIDES {
+            if filled.contains(&add(cell, to)) {
+                continue;
+            }
+            faces += "f";
+            for corner in corners {
+                let p = add(cell, corner);
+                let at = points.iter().position(|&q| q == p).unwrap_or(points.len());
+                if at == points.len() {
+                    points.push(p);
+                }
+                faces += &format!(" {}", at + 1);
+            }
+            faces += "\n";
+        }
+    }
+    let line = |p: &[i32; 3]| {
+        let [x, y, z] = f(p.map(f64::from));
+        format!("v {x} {y} {z}\n")
+    };
+    points.iter().map(line).collect::<String>() + &faces
+}
+
+#[test]
+fn vertices_without_a_direction_are_named() {
+    let dir = tempfile::tempdir().unwrap();
+    // Four cubes in a chain round one point: its quads look both ways along two axes.
+    let chain = voxels(&[[0, 0, 0], [1, 0, 0], [1, 1, 0], [1, 1, 1]], |p| p);
+    std::fs::write(dir.path().join("chain.obj"), &chain).unwrap();
+    let middle = chain.lines().position(|l| l == "v 1 1 1").unwrap();
+    let limits = &info(dir.path(), "chain.obj")["limits"];
+    assert_eq!((&limits["no_direction"]["count"], &limits["sharp_edges"]["count"]), (&1.into(), &0.into()));
+    assert_eq!(limits["no_direction"]["first"][0]["vertex"], middle);
+    assert!(limits["any_mesh"].as_f64().unwrap() > 0.999 && limits["one_edge"].as_f64().unwrap().abs() < 1e-9);
+    let (_, out, _) = hexfill(dir.path(), &["info", "chain.obj"]);
+    let wanted = format!("1 vertex with no single direction that sees all its quads: v{middle} (0.000)");
+    assert!(out.contains(&wanted), "{out}");
+    // Without positions there is nothing to say.
+    let (_, out, _) = hexfill(dir.path(), &["info", ":schneiders-pyramid", "--json"]);
+    let signature = json(&out)["signature"].as_str().unwrap().to_owned();
+    assert!(info(dir.path(), &signature)["limits"].is_null());
+}
+
+#[test]
+fn sharp_edges_and_flat_corners_are_named() {
+    let dir = tempfile::tempdir().unwrap();
+    // A cube sheared to edges of 5.7 degrees: four of its edges, and needles and flat corners on two of its sides.
+    let sheared = voxels(&[[0, 0, 0]], |[x, y, z]| [x, y + 10.0 * z, z]);
+    std::fs::write(dir.path().join("sheared.obj"), sheared).unwrap();
+    let limits = &info(dir.path(), "sheared.obj")["limits"];
+    let count = |kind: &str| limits[kind]["count"].as_u64().unwrap();
+    assert_eq!((count("sharp_edges"), count("needle_corners"), count("flat_corners")), (2, 4, 4));
+    assert_eq!((count("reflex_corners"), count("no_direction")), (0, 0));
+    let sine = 1.0 / 101f64.sqrt();
+    assert!((limits["any_mesh"].as_f64().unwrap() - sine).abs() < 1e-9, "{limits}");
+    let edge = &limits["sharp_edges"]["first"][0];
+    assert!((edge["hexes"].as_f64().unwrap() - sine.asin().to_degrees() / 90.0).abs() < 1e-9);
+    let (_, out, _) = hexfill(dir.path(), &["info", "sheared.obj"]);
+    assert!(out.contains("2 sharp edges: v") && out.contains("(5.7 degrees, 0.06 hexes)"), "{out}");
+    assert!(out.contains("scaled Jacobian: at most 0.100 in any mesh"), "{out}");
 }

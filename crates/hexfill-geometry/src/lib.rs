@@ -16,5 +16,5 @@ mod vector;
 
 pub use angle::{corner_angle, dihedral_angle};
 pub use direction::{Best, best_direction};
-pub use star::{Ray, Reached, climb_star};
+pub use star::{Ray, Reached, climb_star, star_bound};
 pub use vector::{Vector, add, add_scaled, cross, det, direction, dot, midpoint, norm, scale, sub, unit};

@@ -28,14 +28,18 @@ pub struct Reached {
 }
 
 /// Starts tried.
-const STARTS: usize = 5;
+const STARTS: usize = 4;
 
-/// Good directions for the `n_free` free edges of a star with these corners, right-handed triples of different rays. Exact if
-/// no corner has two free edges; else a local optimum, the best of some starts. Deterministic.
-pub fn climb_star(corners: &[[Ray; 3]], n_free: usize) -> Reached {
-    let star = Star { corners, n_free };
-    let mut first = vec![None; n_free];
-    let mut least: f64 = 1.0;
+/// What the corners with at most one free edge allow: no directions make the worst corner better. At most 1.
+pub fn star_bound(corners: &[[Ray; 3]], n_free: usize) -> f64 {
+    singles(&Star { corners, n_free }).0
+}
+
+/// [`star_bound`], and the directions that reach it, for free edges that are the only free one of some corner.
+fn singles(star: &Star<'_>) -> (f64, Vec<Option<Vector>>) {
+    let all_fixed = |corner: &&[Ray; 3]| corner.iter().all(|r| matches!(r, Ray::Fixed(_)));
+    let mut least = star.corners.iter().filter(all_fixed).map(|corner| Star::corner(corner, &[])).fold(1.0, f64::min);
+    let mut first = vec![None; star.n_free];
     for (j, slot) in first.iter_mut().enumerate() {
         let normals = star.normals_of_single(j);
         if !normals.is_empty() {
@@ -44,16 +48,24 @@ pub fn climb_star(corners: &[[Ray; 3]], n_free: usize) -> Reached {
             *slot = Some(best.direction);
         }
     }
+    (least, first)
+}
+
+/// Good directions for the `n_free` free edges of a star with these corners, right-handed triples of different rays. Exact if
+/// no corner has two free edges; else a local optimum, the best of some starts, or the first that reaches `enough`. Deterministic.
+pub fn climb_star(corners: &[[Ray; 3]], n_free: usize, enough: f64) -> Reached {
+    let star = Star { corners, n_free };
+    let (least, first) = singles(&star);
     let several = corners.iter().any(|c| c.iter().filter(|r| matches!(r, Ray::Free(_))).count() > 1);
     if !several {
-        let directions: Vec<Vector> = first.into_iter().map(|d| d.unwrap_or([0.0, 0.0, 1.0])).collect();
-        let value = star.worst(&directions).min(least);
-        return Reached { value, directions };
+        let directions = first.into_iter().map(|d| d.unwrap_or([0.0, 0.0, 1.0])).collect();
+        return Reached { value: least, directions };
     }
     let first = star.relax(&first);
     let none = star.relax(&vec![None; n_free]);
     let mut random = Random::new(17);
     let mut best = Reached { value: f64::NEG_INFINITY, directions: first.clone() };
+    let mut values = vec![0.0; corners.len()];
     for start in 0..STARTS {
         let from = if start % 2 == 0 { &first } else { &none };
         let shake = if start < 2 { 0.0 } else { 0.6 };
@@ -64,13 +76,13 @@ pub fn climb_star(corners: &[[Ray; 3]], n_free: usize) -> Reached {
                 unit(add_scaled(d, shake, noise)).unwrap_or(d)
             })
             .collect();
-        star.climb(&mut u);
+        star.climb(&mut u, &mut values);
         let value = star.worst(&u);
         if value > best.value {
             best = Reached { value, directions: u };
         }
         // Corners with one free edge bound the star: there is nothing above.
-        if best.value > least - 1e-3 {
+        if best.value > least - 1e-3 || best.value >= enough {
             break;
         }
     }
@@ -90,14 +102,13 @@ impl Star<'_> {
         })
     }
 
+    fn corner(corner: &[Ray; 3], u: &[Vector]) -> f64 {
+        let [a, b, c] = Self::columns(corner, u);
+        det(a, b, c)
+    }
+
     fn worst(&self, u: &[Vector]) -> f64 {
-        self.corners
-            .iter()
-            .map(|corner| {
-                let [a, b, c] = Self::columns(corner, u);
-                det(a, b, c)
-            })
-            .fold(1.0, f64::min)
+        self.corners.iter().map(|corner| Self::corner(corner, u)).fold(1.0, f64::min)
     }
 
     /// Normals of the corners in which the free edge `j` is the only one.
@@ -138,21 +149,16 @@ impl Star<'_> {
         u
     }
 
-    /// The soft minimum and, if asked for, its gradient.
-    fn soft(&self, u: &[Vector], b: f64, gradient: Option<&mut [Vector]>) -> f64 {
-        let values: Vec<f64> = self
-            .corners
-            .iter()
-            .map(|corner| {
-                let [x, y, z] = Self::columns(corner, u);
-                det(x, y, z)
-            })
-            .collect();
+    /// The soft minimum and, if asked for, its gradient; `values` takes the corners.
+    fn soft(&self, u: &[Vector], b: f64, values: &mut [f64], gradient: Option<&mut [Vector]>) -> f64 {
+        for (value, corner) in values.iter_mut().zip(self.corners) {
+            *value = Self::corner(corner, u);
+        }
         let least = values.iter().copied().fold(f64::INFINITY, f64::min);
         let sum: f64 = values.iter().map(|s| (-b * (s - least)).exp()).sum();
         if let Some(gradient) = gradient {
             gradient.fill([0.0; 3]);
-            for (corner, s) in self.corners.iter().zip(&values) {
+            for (corner, s) in self.corners.iter().zip(values.iter()) {
                 let weight = (-b * (s - least)).exp() / sum;
                 if weight < 1e-9 {
                     continue;
@@ -169,14 +175,14 @@ impl Star<'_> {
         least - sum.ln() / b
     }
 
-    fn climb(&self, u: &mut Vec<Vector>) {
+    fn climb(&self, u: &mut Vec<Vector>, values: &mut [f64]) {
         let mut gradient = vec![[0.0; 3]; self.n_free];
-        let mut b = 4.0;
+        let mut b = 6.0;
         let mut step: f64 = 0.5;
         while b < 3000.0 {
-            let mut value = self.soft(u, b, None);
+            let mut value = self.soft(u, b, values, None);
             for _ in 0..15 {
-                self.soft(u, b, Some(&mut gradient));
+                self.soft(u, b, values, Some(&mut gradient));
                 for (g, &d) in gradient.iter_mut().zip(u.iter()) {
                     *g = add_scaled(*g, -dot(*g, d), d);
                 }
@@ -186,7 +192,7 @@ impl Star<'_> {
                 }
                 let moved: Vec<Vector> =
                     u.iter().zip(&gradient).map(|(&d, &g)| unit(add(d, scale(step / size, g))).unwrap_or(d)).collect();
-                let reached = self.soft(&moved, b, None);
+                let reached = self.soft(&moved, b, values, None);
                 if reached > value {
                     (*u, value) = (moved, reached);
                     step = (1.4 * step).min(0.7);
@@ -197,7 +203,7 @@ impl Star<'_> {
                     }
                 }
             }
-            b *= 2.0;
+            b *= 3.0;
             step = step.max(0.3 / b);
         }
         for _ in 0..3 {
@@ -231,14 +237,17 @@ mod tests {
     fn two_free_edges_in_the_quarter_space_under_a_roof() {
         // The octant cut by one free edge: three equal corners, 1 / sqrt 3.
         let [x, y, z] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(Ray::Fixed);
-        let one = climb_star(&[[x, y, Ray::Free(0)], [y, z, Ray::Free(0)], [z, x, Ray::Free(0)]], 1);
+        let one = climb_star(&[[x, y, Ray::Free(0)], [y, z, Ray::Free(0)], [z, x, Ray::Free(0)]], 1, 1.0);
         assert!((one.value - 1.0 / 3f64.sqrt()).abs() < 1e-12);
         // Two octants side by side, with a free edge where they meet and one free edge inside: nothing is lost by freeing z.
         let m = Ray::Fixed([-1.0, 0.0, 0.0]);
-        let two = climb_star(&[[x, y, Ray::Free(0)], [y, m, Ray::Free(0)]], 1);
+        let two = climb_star(&[[x, y, Ray::Free(0)], [y, m, Ray::Free(0)]], 1, 1.0);
         assert!((two.value - 1.0).abs() < 1e-12);
-        let free =
-            climb_star(&[[x, y, Ray::Free(0)], [y, Ray::Free(1), Ray::Free(0)], [Ray::Free(1), x, Ray::Free(0)]], 2);
+        let free = climb_star(
+            &[[x, y, Ray::Free(0)], [y, Ray::Free(1), Ray::Free(0)], [Ray::Free(1), x, Ray::Free(0)]],
+            2,
+            1.0,
+        );
         // Angles of 90, 135 and 135 degrees round an upright edge.
         assert!((free.value - 0.5f64.sqrt()).abs() < 1e-6, "{}", free.value);
         let worst = det([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], free.directions[0]);

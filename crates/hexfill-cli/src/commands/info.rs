@@ -1,5 +1,6 @@
 //! `hexfill info SURFACE|MESH`.
 
+use crate::commands::limits::{self, LimitsInfo};
 use crate::console::Console;
 use crate::exit::Exit;
 use crate::files;
@@ -55,6 +56,8 @@ struct SurfaceInfo {
     key: String,
     automorphisms: Option<usize>,
     signature: Option<String>,
+    /// What the positions allow any mesh to reach; absent without positions.
+    limits: Option<LimitsInfo>,
 }
 
 #[derive(Serialize)]
@@ -220,6 +223,7 @@ fn describe(surface: &QuadSurface, points: Option<&[[f64; 3]]>) -> SurfaceInfo {
         key: key(surface).to_string(),
         automorphisms: (small && surface.n_components() == 1).then(|| surface_automorphisms(surface).len()),
         signature: small.then(|| surface_signature(surface)),
+        limits: points.and_then(|points| limits::describe(surface, points)),
     }
 }
 
@@ -267,6 +271,9 @@ fn print_surface(info: &SurfaceInfo, console: &Console) -> anyhow::Result<()> {
     }
     if let Some(signature) = info.signature.as_ref().filter(|s| s.len() <= 2000) {
         console.print(format!("signature: {signature}"))?;
+    }
+    if let Some(limits) = &info.limits {
+        limits.lines().into_iter().try_for_each(|line| console.print(line))?;
     }
     console.print(match info.hex_mesh {
         "exists" => format!("hex mesh: exists ({})", info.because),

@@ -9,5 +9,6 @@ pub mod embed;
 pub mod enumerate;
 pub mod fill;
 pub mod info;
+mod limits;
 pub mod simplify;
 pub mod view;

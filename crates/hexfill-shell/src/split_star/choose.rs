@@ -1,17 +1,24 @@
 //! Which hexes to shrink: the arcs of a vertex's fan, grown by neighbouring quads, ranked by what all touched stars can reach.
 //!
 //! A star's penalty is the cube of what it lacks to [`GOOD`], so the worst of the touched vertices decide and good ones do not count. A
-//! choice is worth the penalty it takes away from all surface vertices it touches, less a little a hex. It may not push a vertex
+//! choice is worth the penalty it takes away from all surface vertices it touches (that of the vertex to be split
+//! counts [`WEIGHT`] times, as no real placement reaches what its star alone could), less a little a hex. It may not push a vertex
 //! that was fine below the limit, nor a poor one further down.
 
 use super::SplitOptions;
 use super::cells::{Cells, is_sphere};
-use hexfill_geometry::{Ray, Vector, best_direction, climb_star, cross, direction};
+use hexfill_geometry::{Ray, Vector, best_direction, climb_star, cross, direction, star_bound};
 use hexfill_mesh::{Dart, QuadSurface};
 use rayon::prelude::*;
+use rustc_hash::FxHashMap;
+use std::sync::Mutex;
 
 /// A star that can reach this needs no more.
 const GOOD: f64 = 0.7;
+
+/// How much more the vertex to be split counts than the others. *Measured* on four cubes round a point behind a layer: with equal
+/// weights a split at one quad wins, whose star could reach 0.447 and whose mesh cannot be valid; with this one a split at three, 0.666 and 0.29.
+const WEIGHT: f64 = 10.0;
 
 /// What one more hex costs, in penalty.
 const HEX: f64 = 0.001;
@@ -24,6 +31,9 @@ const REACH: usize = 4;
 
 /// Arcs of more quads round a vertex than this are not all tried: their ends keep to every second, third, ... edge.
 const MOST_ENDS: usize = 16;
+
+/// A star that reaches no more is not valid: rounding.
+const NOTHING: f64 = 1e-6;
 
 /// Stands for the new end of a vertex's new edge.
 const NEW: u32 = u32::MAX;
@@ -38,7 +48,7 @@ pub(super) struct Choice {
     /// The quads of the surface they were taken for.
     quads: Vec<Dart>,
     /// The penalty it takes away.
-    worth: f64,
+    pub(super) worth: f64,
 }
 
 /// The surface and what stars on it can reach.
@@ -91,7 +101,8 @@ impl<'a> Chooser<'a> {
 
     /// What the star of a surface vertex can reach in the mesh as it is.
     pub(super) fn value(&self, cells: &Cells, v: u32) -> f64 {
-        self.reach(v, &cells.corners_at(v, &[]))
+        let (corners, n_free) = self.star(v, &cells.corners_at(v, &[]));
+        climb_star(&corners, n_free, 1.0).value
     }
 
     /// Of these vertices, ascending, those whose star cannot reach the limit, with what it can.
@@ -112,25 +123,20 @@ impl<'a> Chooser<'a> {
         all
     }
 
-    /// What a star with these corners can reach: triples of the other ends of their edges; only ends on the surface are fixed.
-    fn reach(&self, v: u32, corners: &[[u32; 3]]) -> f64 {
+    /// A star's corners with the directions of its fixed edges, and the number of free ones; only ends on the surface are fixed.
+    fn star(&self, v: u32, corners: &[[u32; 3]]) -> (Vec<[Ray; 3]>, usize) {
         let mut free: Vec<u32> = corners.iter().flatten().copied().filter(|&w| !self.is_surface(w)).collect();
         free.sort_unstable();
         free.dedup();
-        let rays: Vec<[Ray; 3]> = corners
-            .iter()
-            .map(|ends| {
-                ends.map(|w| match free.binary_search(&w) {
-                    Ok(j) => Ray::Free(j),
-                    Err(_) => Ray::Fixed(self.direction(v, w)),
-                })
-            })
-            .collect();
-        climb_star(&rays, free.len()).value
+        let ray = |w: u32| match free.binary_search(&w) {
+            Ok(j) => Ray::Free(j),
+            Err(_) => Ray::Fixed(self.direction(v, w)),
+        };
+        (corners.iter().map(|ends| ends.map(ray)).collect(), free.len())
     }
 
-    /// What the star of v can reach once the set is shrunk.
-    fn reach_after(&self, cells: &Cells, v: u32, set: &[u32], skin: &[[u32; 4]]) -> f64 {
+    /// The star of v once the set is shrunk.
+    fn star_after(&self, cells: &Cells, v: u32, set: &[u32], skin: &[[u32; 4]]) -> (Vec<[Ray; 3]>, usize) {
         let mut corners = cells.corners_at(v, set);
         for facet in skin {
             if let Some(i) = facet.iter().position(|&w| w == v) {
@@ -138,7 +144,7 @@ impl<'a> Chooser<'a> {
                 corners.push([facet[(i + 3) % 4], facet[(i + 1) % 4], NEW]);
             }
         }
-        self.reach(v, &corners)
+        self.star(v, &corners)
     }
 
     /// The best set to shrink for v, if any helps enough.
@@ -152,19 +158,42 @@ impl<'a> Chooser<'a> {
                 arcs.push((0..length).map(|i| fan[(start + i) % k]).collect());
             }
         }
-        let mut found: Vec<Choice> = arcs.into_par_iter().filter_map(|arc| self.judge(cells, v, arc)).collect();
+        let known = Known::default();
+        let mut found: Vec<Choice> =
+            arcs.into_par_iter().filter_map(|arc| self.judge(cells, &known, v, arc, 0.0)).collect();
         let rank = |found: &mut Vec<Choice>| {
             found.sort_by(|a, b| b.worth.total_cmp(&a.worth).then(a.quads.cmp(&b.quads)));
         };
         rank(&mut found);
         found.truncate(GROWN);
-        let mut found: Vec<Choice> = found.into_par_iter().map(|choice| self.grow(cells, v, choice)).collect();
+        let mut found: Vec<Choice> = found.into_par_iter().map(|choice| self.grow(cells, &known, v, choice)).collect();
         rank(&mut found);
         found.into_iter().next()
     }
 
+    #[cfg(test)]
+    pub(super) fn all_choices(&self, cells: &Cells, v: u32) -> Vec<Choice> {
+        let fan: Vec<Dart> = self.surface.round_vertex(self.dart[v as usize].unwrap()).collect();
+        let k = fan.len();
+        let mut found = Vec::new();
+        let known = Known::default();
+        for start in 0..k {
+            for length in 1..k {
+                let arc: Vec<Dart> = (0..length).map(|i| fan[(start + i) % k]).collect();
+                if let Some(c) = self.judge(cells, &known, v, arc, 0.0) {
+                    let g = self.grow(cells, &known, v, c.clone());
+                    if g.set != c.set {
+                        found.push(g);
+                    }
+                    found.push(c);
+                }
+            }
+        }
+        found
+    }
+
     /// Takes neighbouring quads in, one at a time, as long as that helps.
-    fn grow(&self, cells: &Cells, v: u32, mut choice: Choice) -> Choice {
+    fn grow(&self, cells: &Cells, known: &Known, v: u32, mut choice: Choice) -> Choice {
         for _ in 0..REACH {
             let mut next: Vec<Dart> = Vec::new();
             let has = |d: Dart| choice.quads.iter().any(|q| q.quad() == d.quad());
@@ -181,20 +210,17 @@ impl<'a> Chooser<'a> {
             let tried = next.into_iter().filter_map(|d| {
                 let mut quads = choice.quads.clone();
                 quads.push(d);
-                self.judge(cells, v, quads)
+                self.judge(cells, known, v, quads, choice.worth)
             });
             // The first of the best.
             let Some(best) = tried.reduce(|a, b| if b.worth > a.worth { b } else { a }) else { break };
-            if best.worth <= choice.worth {
-                break;
-            }
             choice = best;
         }
         choice
     }
 
-    /// What shrinking the hexes on these quads is worth; `None` if it cannot be done or does not help v.
-    fn judge(&self, cells: &Cells, v: u32, quads: Vec<Dart>) -> Option<Choice> {
+    /// What shrinking the hexes on these quads is worth; `None` if it cannot be done, does not help v, or is not worth more than `floor`.
+    fn judge(&self, cells: &Cells, known: &Known, v: u32, quads: Vec<Dart>, floor: f64) -> Option<Choice> {
         let mut set: Vec<u32> = Vec::new();
         for d in &quads {
             set.push(cells.owner(self.surface.quad(d.quad()).map(|w| w.0))?);
@@ -202,26 +228,55 @@ impl<'a> Chooser<'a> {
         set.sort_unstable();
         set.dedup();
         let skin = cells.skin(&set);
-        let (before, after) = (self.value(cells, v), self.reach_after(cells, v, &set, &skin));
-        if after < before + self.options.gain || !is_sphere(&skin) {
+        // First with what the stars can reach at most, which is quick; then one by one with what they do.
+        let mut worth = -HEX * skin.len() as f64;
+        let mut stars = Vec::new();
+        for w in self.surface_vertices(&skin) {
+            let (corners, n_free) = self.star_after(cells, w, &set, &skin);
+            let (before, most) = (self.known(cells, known, w), star_bound(&corners, n_free));
+            if most < self.least_after(v, w, before) {
+                return None;
+            }
+            let weight = if w == v { WEIGHT } else { 1.0 };
+            worth += weight * (penalty(before) - penalty(most));
+            stars.push((w, before, most, corners, n_free));
+        }
+        if worth <= floor || !is_sphere(&skin) {
             return None;
         }
-        let mut worth = penalty(before) - penalty(after) - HEX * skin.len() as f64;
-        for w in self.surface_vertices(&skin).into_iter().filter(|&w| w != v) {
-            if worth <= 0.0 {
-                // Others may gain, too, but the vertex itself must be worth it.
+        stars.sort_by_key(|star| (star.0 != v, star.0));
+        for (w, before, most, corners, n_free) in stars {
+            let after = climb_star(&corners, n_free, GOOD).value;
+            let weight = if w == v { WEIGHT } else { 1.0 };
+            worth += weight * (penalty(most) - penalty(after));
+            if worth <= floor || after < self.least_after(v, w, before) {
                 return None;
             }
-            let (before, after) = (self.value(cells, w), self.reach_after(cells, w, &set, &skin));
-            if after < self.options.below.min(before) {
-                return None;
-            }
-            worth += penalty(before) - penalty(after);
         }
-        (worth > 0.0).then_some(Choice { set, skin, quads, worth })
+        Some(Choice { set, skin, quads, worth })
+    }
+
+    /// What the star of w must reach after a split of v: v itself gains, no other becomes poor, or poorer.
+    fn least_after(&self, v: u32, w: u32, before: f64) -> f64 {
+        if w == v { before + self.options.gain } else { before.min(self.options.below) }
+    }
+
+    /// [`value`](Self::value), computed once.
+    fn known(&self, cells: &Cells, known: &Known, v: u32) -> f64 {
+        let lock = || known.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        if let Some(&value) = lock().get(&v) {
+            return value;
+        }
+        let value = self.value(cells, v);
+        lock().insert(v, value);
+        value
     }
 }
 
+/// Values of stars in a mesh that does not change meanwhile.
+type Known = Mutex<FxHashMap<u32, f64>>;
+
+/// The penalty of a star; one that cannot be valid outweighs whatever else there is.
 fn penalty(value: f64) -> f64 {
-    (GOOD - value).max(0.0).powi(3)
+    (GOOD - value).max(0.0).powi(3) + if value <= NOTHING { 10.0 } else { 0.0 }
 }

@@ -61,8 +61,17 @@ fn assert_proper(made: &HexMesh, before: &HexMesh) {
 
 #[test]
 fn look() {
-    for n in [1, 2, 3] {
-        let (mesh, points) = chain(n);
+    for (n, bend) in [(1, 0.0), (2, 0.0), (2, 0.3), (2, 0.6), (3, 0.6), (3, 0.9)] {
+        let (mesh, mut points) = chain(n);
+        let c = n as f64;
+        // Turns the upper part against the lower one, so that the two sides of the middle overhang.
+        for p in &mut points {
+            let h = (p[2] - c) / c;
+            let (x, y) = (p[0] - c, p[1] - c);
+            p[1] += -bend * h * (c - (x * x).min(c * c) / c).max(0.0);
+            let _ = y;
+        }
+        println!("bend {bend}");
         let layered = pillowed(&mesh);
         let before =
             hexfill_embed::embed(&layered, &points, None, &Default::default(), &Context::default()).unwrap().report;
@@ -138,5 +147,32 @@ fn look_random() {
             after.scaled_jacobian,
             after.upper_bound
         );
+    }
+}
+
+#[test]
+fn explore() {
+    use super::choose::Chooser;
+    let (mesh, points) = chain(1);
+    let layered = pillowed(&mesh);
+    let quads: Vec<[u32; 4]> = layered.boundary_quads().iter().map(|q| q.map(|v| v.0)).collect();
+    let surface = hexfill_mesh::QuadSurface::try_new(layered.n_vertices(), &quads).unwrap();
+    let chooser = Chooser::new(&surface, &points, SplitOptions::default());
+    let mut cells = Cells::new(&layered);
+    let poor = chooser.vertices_no_direction_serves();
+    for choice in chooser.all_choices(&cells, poor[0]) {
+        let undo = cells.shrink(&choice.set, &choice.skin);
+        let m = cells.to_mesh().unwrap();
+        let after = hexfill_embed::embed(&m, &points, None, &Default::default(), &Context::default()).unwrap().report;
+        println!(
+            "set {:?} worth {} value {} invalid {} sj {} bound {}",
+            choice.set,
+            choice.worth,
+            chooser.value(&cells, poor[0]),
+            after.n_invalid,
+            after.scaled_jacobian,
+            after.upper_bound
+        );
+        cells.undo(&undo);
     }
 }
