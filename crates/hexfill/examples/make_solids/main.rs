@@ -1,11 +1,12 @@
 //! Writes test surfaces for `tests/campaign.py`: `cargo run --release --example make_solids -- FOLDER [KIND...]`.
 //!
 //! KIND is `solids` (some 30 solids with a known good hex mesh), `voxels` (200 random ones of genus 0), `holes` (100 with tunnels and
-//! cavities), `balls` (cubed spheres and ellipsoids), `cut` (triangulated spheres cut into quads) or `radial` (radial graphs);
-//! all by default. Each surface is `KIND_NAME.obj`; its known mesh, if there is one, is `reference/KIND_NAME.vtk`, whose first
+//! cavities), `balls` (cubed spheres and ellipsoids), `cut` (triangulated spheres cut into quads), `radial` (radial graphs), `smooth`
+//! (voxel solids refined and smoothed) or `mixed` (quad-dominant surfaces refined, with self-crossing chords); all by default. Each surface is `KIND_NAME.obj`; its known mesh, if there is one, is `reference/KIND_NAME.vtk`, whose first
 //! vertices are those of the surface. `references.json` says for each file its kind, quads, and the reference's hexes and
 //! certified scaled Jacobian. The same folder comes out everywhere, up to the last bits of sines.
 
+mod refine;
 mod section;
 mod solid;
 mod solids;
@@ -29,9 +30,8 @@ struct Folder {
 impl Folder {
     /// Writes a solid's surface and mesh, and one line about it; a mesh the judge does not certify is an error.
     fn solid(&mut self, kind: &str, name: &str, solid: Solid) -> Result<(), Box<dyn Error>> {
-        let quads = solid.boundary();
-        let n = quads.iter().flatten().max().map_or(0, |&v| v as usize + 1);
-        let surface = MeshData::from_quads(solid.points[..n].to_vec(), quads);
+        let (points, quads) = solid.surface();
+        let surface = MeshData::from_quads(points, quads);
         let judged = Judged::connectivity(solid.points.len(), &solid.hexes).with_points(&solid.points);
         let report = judge(&judged.with_surface(&surface.quads), &Options::default(), &Context::default());
         if !report.passed(Level::L5) {
@@ -67,8 +67,12 @@ impl Folder {
 const BALLS: [usize; 9] = [4, 5, 6, 8, 10, 12, 16, 22, 29];
 /// Points of the triangulations: 20 to 500 triangles.
 const CUT: [usize; 8] = [12, 16, 22, 32, 52, 92, 152, 252];
+/// Points of the mixed surfaces: 90 to some 2,600 quads.
+const MIXED: [usize; 8] = [24, 40, 60, 100, 150, 250, 400, 650];
 /// Points of the radial graphs, even so that the quads are: 24 to 198 quads.
 const RADIAL: [usize; 9] = [10, 12, 16, 20, 24, 30, 40, 54, 68];
+
+const KINDS: [&str; 8] = ["solids", "voxels", "holes", "balls", "cut", "radial", "smooth", "mixed"];
 
 fn make(kind: &str, folder: &mut Folder) -> Result<(), Box<dyn Error>> {
     match kind {
@@ -117,6 +121,28 @@ fn make(kind: &str, folder: &mut Folder) -> Result<(), Box<dyn Error>> {
                 folder.bare("radial", &format!("random_{quads}"), spheres::radial(&random))?;
             }
         }
+        "smooth" => {
+            for seed in 0..30 {
+                let solid = voxels::solid(&voxels::sphere(6 + seed as usize * 2, 1000 + seed));
+                let mut surface = refine::catmull_clark_quads(&solid.surface());
+                if seed % 3 == 2 {
+                    surface = refine::catmull_clark_quads(&surface);
+                }
+                folder.bare("smooth", &format!("{seed:02}_{}", surface.1.len()), surface)?;
+            }
+        }
+        "mixed" => {
+            for n in MIXED {
+                for (name, points) in
+                    [("even", spheres::even_points(n)), ("random", spheres::random_points(n, 7 + n as u64))]
+                {
+                    let surface = refine::catmull_clark(&points, &refine::mixed(&points, n as u64));
+                    let (points, quads) = surface;
+                    let points = points.into_iter().map(|[x, y, z]| [1.4 * x, y, 0.9 * z]).collect();
+                    folder.bare("mixed", &format!("{name}_{}", quads.len()), (points, quads))?;
+                }
+            }
+        }
         _ => return Err(format!("no kind {kind}").into()),
     }
     Ok(())
@@ -125,15 +151,74 @@ fn make(kind: &str, folder: &mut Folder) -> Result<(), Box<dyn Error>> {
 fn main() -> Result<(), Box<dyn Error>> {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let Some((path, kinds)) = words.split_first() else {
-        return Err("usage: make_solids FOLDER [solids|voxels|holes|balls|cut|radial ...]".into());
+        return Err("usage: make_solids FOLDER [solids|voxels|holes|balls|cut|radial|smooth|mixed ...]".into());
     };
     let mut folder = Folder { path: Path::new(path).to_owned(), facts: Map::new() };
     std::fs::create_dir_all(folder.path.join("reference"))?;
     let kinds: Vec<&str> = kinds.iter().map(String::as_str).collect();
-    for kind in if kinds.is_empty() { &["solids", "voxels", "holes", "balls", "cut", "radial"][..] } else { &kinds } {
+    for kind in if kinds.is_empty() { &KINDS[..] } else { &kinds } {
         make(kind, &mut folder)?;
     }
     let text = serde_json::to_string_pretty(&folder.facts)?;
     std::fs::write(folder.path.join("references.json"), text + "\n")?;
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hexfill_mesh::QuadSurface;
+
+    fn of((points, quads): &spheres::Surface) -> QuadSurface {
+        QuadSurface::try_new(points.len(), quads).unwrap()
+    }
+
+    #[test]
+    fn the_known_meshes_have_the_known_counts_and_are_certified() {
+        let all = solids::all();
+        assert!(all.len() >= 20);
+        for (name, solid) in &all {
+            let judged = Judged::connectivity(solid.points.len(), &solid.hexes).with_points(&solid.points);
+            let quads = solid.boundary();
+            let report = judge(&judged.with_surface(&quads), &Options::default(), &Context::default());
+            assert!(report.passed(Level::L5), "{name}: {report}");
+            assert!(report.geometry.unwrap().quality.unwrap().certified_scaled_jacobian[0] > 0.35, "{name}");
+        }
+        let counts = |wanted: &str| {
+            let (_, solid) = all.iter().find(|(name, _)| *name == wanted).unwrap();
+            let surface = of(&solid.surface());
+            (surface.n_quads(), solid.hexes.len(), surface.genus(), surface.n_components())
+        };
+        assert_eq!(counts("box_4x5x3"), (94, 60, 0, 1));
+        assert_eq!(counts("cylinder"), (208, 320, 0, 1));
+        assert_eq!(counts("step_shaft"), (352, 5 * 80 + 7 * 48, 0, 1));
+        assert_eq!(counts("hollow_sphere"), (300, 450, 0, 2));
+        for ring in ["pipe_bend", "plate_square_hole", "plate_round_hole", "torus_block", "torus_round"] {
+            assert_eq!(counts(ring).2, 1, "{ring}");
+        }
+    }
+
+    #[test]
+    fn triangulations_and_refinements_are_spheres() {
+        for n in [12, 31, 100] {
+            for points in [spheres::even_points(n), spheres::random_points(n, 3)] {
+                assert_eq!(spheres::hull(&points).len(), 2 * n - 4);
+                assert!(of(&spheres::cut_triangles(&points)).is_sphere());
+                assert!(of(&spheres::radial(&points)).is_sphere());
+                let refined = of(&refine::catmull_clark(&points, &refine::mixed(&points, 5)));
+                assert!(refined.is_sphere());
+                assert!(refined.darts().all(|d| refined.degree(refined.origin(d)) >= 3));
+            }
+        }
+    }
+
+    #[test]
+    fn voxel_solids_are_what_they_should_be() {
+        for seed in 0..20 {
+            assert!(of(&voxels::solid(&voxels::sphere(30, seed)).surface()).is_sphere());
+            let (cells, genus, parts) = voxels::with_holes([5, 4, 4], 2, 1, 4, seed);
+            let surface = of(&voxels::solid(&cells).surface());
+            assert_eq!((surface.genus(), surface.n_components()), (genus, parts));
+        }
+    }
 }

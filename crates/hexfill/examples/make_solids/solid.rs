@@ -162,4 +162,11 @@ impl Solid {
         }
         facets().filter(|&q| open[&sorted(q)] == 1).collect()
     }
+
+    /// The boundary with its points, which are the first of the mesh.
+    pub fn surface(&self) -> (Vec<Point>, Vec<[u32; 4]>) {
+        let quads = self.boundary();
+        let n = quads.iter().flatten().max().map_or(0, |&v| v as usize + 1);
+        (self.points[..n].to_vec(), quads)
+    }
 }
