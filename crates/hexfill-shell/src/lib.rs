@@ -32,5 +32,4 @@ pub use glue::Patch;
 pub use shell::{ShellOptions, Shelled, Shelling, shell};
 pub use split_star::{SplitOptions, SplitStars, SplitVertex, split_stars};
 pub use sweep::{EdgeWant, SweepOptions, Swept, sweep, sweep_front};
-pub use sweep::{SweepOptions, Swept, sweep, sweep_front};
 pub use zip::Refused;

@@ -164,7 +164,7 @@ impl<'a> Start<'a> {
             return meshes;
         }
         let fronts: Vec<Front> =
-            partial.into_iter().take(CONTINUED).filter_map(|s| s.void.to_front(&self.quads)).collect();
+            partial.into_iter().take(CONTINUED).filter_map(|s| s.void.to_wanting_front(&self.quads)).collect();
         meshes.extend(self.by_flips(options, &fronts, left, ctx));
         meshes
     }
@@ -172,8 +172,12 @@ impl<'a> Start<'a> {
     /// Complete coarse meshes by flips, from the start and from `others`.
     fn by_flips(&self, options: &ShellOptions, others: &[Front], left: &mut usize, ctx: &Context<'_>) -> Vec<Hexes> {
         let Some(front) = self.void.to_front(&self.quads) else { return Vec::new() };
-        let starts: Vec<(&Front, u64)> =
-            (0..options.seeds).map(|seed| (&front, seed)).chain(others.iter().map(|f| (f, 0))).collect();
+        let Some(wanting) = self.void.to_wanting_front(&self.quads) else { return Vec::new() };
+        // Every other sweep looks at lenses alone: it ends with fewer hexes.
+        let starts: Vec<(&Front, u64)> = (0..options.seeds)
+            .map(|seed| (if seed % 2 == 0 { &wanting } else { &front }, seed / 2))
+            .chain(others.iter().map(|f| (f, 0)))
+            .collect();
         let mut fronts: Vec<Front> = starts
             .into_par_iter()
             .map(|(front, seed)| {

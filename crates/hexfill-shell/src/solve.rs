@@ -97,16 +97,13 @@ fn moves(void: &Void) -> Vec<Move> {
         separates[i] = !moves.is_empty();
         found.extend(moves);
     }
-    if separates.iter().all(|&s| s) {
-        return found;
-    }
     let mut seen = FxHashSet::default();
     for set in patch_sets(void, &rings) {
         if set.len() > 1 && seen.insert(set.clone()) {
             found.extend(consider(void, set.iter().map(|&r| rings[r].clone()).collect()));
         }
     }
-    if rings.len() <= MOST_PAIRED {
+    if rings.len() <= MOST_PAIRED && !separates.iter().all(|&s| s) {
         for i in 0..rings.len() {
             for j in i + 1..rings.len() {
                 let same_height = void.length[rings[i][0] as usize] == void.length[rings[j][0] as usize];

@@ -108,6 +108,17 @@ impl Void {
         Front::try_from_parts(self.n_vertices, surface, &self.hexes, &self.quads).ok()
     }
 
+    /// [`to_front`](Self::to_front) that knows how many hexes its edges want.
+    pub fn to_wanting_front(&self, surface: &[[u32; 4]]) -> Option<Front> {
+        let mut front = self.to_front(surface)?;
+        let mut wanted: FxHashMap<(u32, u32), f32> = FxHashMap::default();
+        for d in 0..self.n_darts() {
+            wanted.insert((self.origin(d), self.target(d)), self.wanted[d as usize]);
+        }
+        front.set_wants(|a, b| wanted.get(&(a, b)).copied().unwrap_or(2.0));
+        Some(front)
+    }
+
     /// This void after hexes were added to it as a front without merging any vertices: an edge of the old front wants what the new
     /// hexes at it leave, a new one 4 hexes in all. Every edge that is new has length 1.
     pub fn after(&self, front: &Front) -> Option<Self> {

@@ -20,7 +20,7 @@ pub(crate) const GOOD: f64 = 0.2;
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Prefer {
-    /// Fewest hexes per unit of worst scaled Jacobian: twice the hexes must bring twice the quality.
+    /// Fewest hexes divided by the cube of the worst scaled Jacobian: twice the hexes must bring 26 % more quality.
     #[default]
     Balance,
     /// Fewest hexes.
@@ -43,7 +43,7 @@ fn rank(filled: &Filled, placed: &Placed, prefer: Prefer) -> Rank {
         return (1, -worst);
     }
     let within = match prefer {
-        Prefer::Balance => hexes / worst,
+        Prefer::Balance => hexes / worst.powi(3),
         Prefer::Hexes => hexes,
         Prefer::Quality => -worst,
     };
@@ -84,7 +84,9 @@ pub(crate) fn fill_best(
     for filled in result.meshes.drain(..) {
         consider(filled, &mut best);
     }
-    for filled in shelled(problem, options, ctx, &mut result)? {
+    // Where one component lies in another, shells do not sweep.
+    let shelled = if surface.n_components() == 1 { shelled(problem, options, ctx, &mut result)? } else { Vec::new() };
+    for filled in shelled {
         if ctx.stop().is_some() && best.is_some() {
             break;
         }

@@ -245,7 +245,7 @@ pub(crate) fn fill_component(
     }
     let mut result = FillResult { meshes: Vec::new(), stop: StopReason::Finished, tried: Vec::new() };
     let by_atlas = matches!(options.strategy, Strategy::Auto | Strategy::Atlas);
-    let by_shelling = matches!(options.strategy, Strategy::Auto | Strategy::Shell);
+    let by_shelling = matches!(options.strategy, Strategy::Auto | Strategy::Shell) && surface.n_components() == 1;
     if small && by_atlas {
         // What the atlas does not hold is shelled before inward flips have their turn.
         let cavities = if options.strategy == Strategy::Auto && options.count == 1 && !options.improve { 1 } else { options.inward_cavities };

@@ -113,7 +113,7 @@ enum StrategyArg {
 
 #[derive(Clone, Copy, PartialEq, Eq, Debug, clap::ValueEnum)]
 enum PreferArg {
-    /// Fewest hexes per unit of worst scaled Jacobian.
+    /// Fewest hexes divided by the cube of the worst scaled Jacobian.
     Balance,
     /// Fewest hexes.
     Hexes,
