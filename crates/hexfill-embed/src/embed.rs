@@ -97,6 +97,16 @@ pub fn star_bounds(mesh: &HexMesh, boundary_points: &[[f64; 3]]) -> Result<Vec<S
     Ok(stars.into_iter().map(|s| s.bound).collect())
 }
 
+/// A quick upper bound on the worst scaled Jacobian of any embedding with this boundary: the smallest vertex-star bound that counts the
+/// corners with at most one free edge only. Linear time.
+///
+/// # Errors
+/// As [`embed`].
+pub fn quick_star_bound(mesh: &HexMesh, boundary_points: &[[f64; 3]]) -> Result<f64, EmbedError> {
+    let normal = Normal::new(mesh, boundary_points, None)?;
+    Ok(least_bound(&star::bounds(&normal.problem, &normal.points)))
+}
+
 /// The problem in normal coordinates, and the way back.
 struct Normal {
     problem: Problem,

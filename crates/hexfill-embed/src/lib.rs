@@ -42,7 +42,7 @@ mod untangle;
 mod vector;
 
 pub use canonical::canonical_polyhedron;
-pub use embed::{embed, star_bounds, tutte_start};
+pub use embed::{embed, quick_star_bound, star_bounds, tutte_start};
 pub use error::EmbedError;
 pub use report::{CellQuality, EmbedReport, Embedding, Objective, Options};
 pub use star::StarBound;

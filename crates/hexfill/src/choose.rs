@@ -5,9 +5,10 @@
 //! hexes for their quality ([`Prefer`]).
 
 use crate::fill::{FillError, FillOptions, Filled, Route, Strategy, construct, search, shelled};
-use crate::geometry::{Placed, place};
+use crate::geometry::{Placed, place, place_as_it_is};
 use crate::placed_fill::{Next, PlaceOptions, PlacedFill, no_room};
 use crate::problem::Problem;
+use hexfill_embed::quick_star_bound;
 use hexfill_mesh::{Context, StopReason};
 use hexfill_search::MAX_QUADS;
 use serde::Serialize;
@@ -33,7 +34,6 @@ pub enum Prefer {
 type Rank = (u8, f64);
 
 fn rank(filled: &Filled, placed: &Placed, prefer: Prefer) -> Rank {
-    let hexes = filled.mesh.n_hexes() as f64;
     let invalid = placed.cells.iter().filter(|c| !c.valid).count();
     if placed.cells.is_empty() || invalid > 0 {
         return (2, if placed.cells.is_empty() { f64::MAX } else { invalid as f64 });
@@ -42,12 +42,16 @@ fn rank(filled: &Filled, placed: &Placed, prefer: Prefer) -> Rank {
     if worst < GOOD {
         return (1, -worst);
     }
-    let within = match prefer {
-        Prefer::Balance => hexes / worst.powi(3),
-        Prefer::Hexes => hexes,
+    (0, within(filled.mesh.n_hexes(), worst, prefer))
+}
+
+/// The order among good meshes.
+fn within(hexes: usize, worst: f64, prefer: Prefer) -> f64 {
+    match prefer {
+        Prefer::Balance => hexes as f64 / worst.powi(3),
+        Prefer::Hexes => hexes as f64,
         Prefer::Quality => -worst,
-    };
-    (0, within)
+    }
 }
 
 /// One mesh for the problem with coordinates, by the order above.
@@ -62,61 +66,50 @@ pub(crate) fn fill_best(
     boundary: &[[f64; 3]],
     ctx: &Context<'_>,
 ) -> Result<PlacedFill, FillError> {
-    let limited = || how.limit.map_or(*ctx, |limit| ctx.with_time_limit(limit));
     let surface = &problem.surface;
     let mut result = crate::fill::FillResult { meshes: Vec::new(), stop: StopReason::Finished, tried: Vec::new() };
     let small = surface.is_sphere() && surface.n_quads() <= MAX_QUADS;
-    let mut best: Option<(Rank, Filled, Placed)> = None;
-    let mut seen: Vec<String> = Vec::new();
-    let mut consider = |mut filled: Filled, best: &mut Option<(Rank, Filled, Placed)>| {
-        let placed = place(&mut filled, problem, boundary, Some(embed), &limited());
-        let rank = rank(&filled, &placed, options.prefer);
-        let valid = if placed.is_certified() { format!("{:.3}", placed.worst()) } else { "not certified".to_owned() };
-        seen.push(format!("{} hexes by {} ({valid})", filled.mesh.n_hexes(), filled.route.words()));
-        if best.as_ref().is_none_or(|(r, ..)| rank.0 < r.0 || rank.0 == r.0 && rank.1 < r.1) {
-            *best = Some((rank, filled, placed));
-        }
-    };
+    let mut trial = Trial { problem, options, boundary, how, ctx, embed, best: None, seen: Vec::new() };
     if small && options.strategy == Strategy::Auto {
         // One cavity: the surface itself.
         search(surface, &FillOptions { inward_cavities: 1, ..options.clone() }, ctx, &mut result)?;
     }
     for filled in result.meshes.drain(..) {
-        consider(filled, &mut best);
+        trial.consider(filled);
     }
     // Where one component lies in another, shells do not sweep.
     let shelled = if surface.n_components() == 1 { shelled(problem, options, ctx, &mut result)? } else { Vec::new() };
     for filled in shelled {
-        if ctx.stop().is_some() && best.is_some() {
+        if ctx.stop().is_some() && trial.best.is_some() {
             break;
         }
-        consider(filled, &mut best);
+        trial.consider(filled);
     }
-    let is_good = |best: &Option<(Rank, Filled, Placed)>| best.as_ref().is_some_and(|((class, _), ..)| *class == 0);
     let mut why_none = None;
-    if options.strategy == Strategy::Auto && !is_good(&best) && ctx.stop().is_none() {
+    if options.strategy == Strategy::Auto && !trial.is_good() && ctx.stop().is_none() {
         why_none = no_room(surface, boundary);
-        let has_valid = best.as_ref().is_some_and(|((class, _), ..)| *class == 1);
+        let has_valid = trial.class() == Some(1);
         if small && why_none.is_none() && !has_valid {
             search(surface, options, ctx, &mut result)?;
             for filled in result.meshes.drain(..) {
-                consider(filled, &mut best);
+                trial.consider(filled);
             }
             let next = Next { problem, options, embed, boundary };
-            if !is_good(&best)
-                && let Some((filled, _)) = next.more_fillings(&limited, ctx, &mut result.tried)?
+            if !trial.is_good()
+                && let Some((filled, _)) = next.more_fillings(&|| trial.limited(), ctx, &mut result.tried)?
             {
-                consider(filled, &mut best);
+                trial.consider(filled);
             }
         }
-        let certified = best.as_ref().is_some_and(|((class, _), ..)| *class < 2);
-        if (best.is_none() || why_none.is_none() && !certified) && ctx.stop().is_none() {
+        let certified = trial.class().is_some_and(|class| class < 2);
+        if (trial.best.is_none() || why_none.is_none() && !certified) && ctx.stop().is_none() {
             construct(problem, options, ctx, &mut result)?;
             for filled in result.meshes.drain(..) {
-                consider(filled, &mut best);
+                trial.consider(filled);
             }
         }
     }
+    let Trial { best, seen, .. } = trial;
     let choice = match (why_none, seen.len()) {
         (Some(why), _) => Some(format!("no other mesh was tried, since none can be valid: {why}")),
         (None, 0 | 1) => None,
@@ -128,6 +121,67 @@ pub(crate) fn fill_best(
     let meshes = best.into_iter().map(|(_, filled, placed)| (filled, Some(placed))).collect();
     Ok(PlacedFill { meshes, stop, tried: result.tried, choice })
 }
+
+/// The best mesh so far and what was tried.
+struct Trial<'a> {
+    problem: &'a Problem,
+    options: &'a FillOptions,
+    boundary: &'a [[f64; 3]],
+    how: &'a PlaceOptions,
+    ctx: &'a Context<'a>,
+    embed: &'a hexfill_embed::Options,
+    best: Option<(Rank, Filled, Placed)>,
+    seen: Vec<String>,
+}
+
+impl<'a> Trial<'a> {
+    fn limited(&self) -> Context<'a> {
+        self.how.limit.map_or(*self.ctx, |limit| self.ctx.with_time_limit(limit))
+    }
+
+    fn class(&self) -> Option<u8> {
+        self.best.as_ref().map(|((class, _), ..)| *class)
+    }
+
+    fn is_good(&self) -> bool {
+        self.class() == Some(0)
+    }
+
+    /// Embeds a mesh and keeps it if it is the best.
+    fn consider(&mut self, mut filled: Filled) {
+        let prefer = self.options.prefer;
+        let placed = if filled.route == Route::Shelling {
+            // Its surface vertices lie where the surface's do, so there is one way to place it.
+            let perfect = (0, within(filled.mesh.n_hexes(), 1.0, prefer));
+            if self.best.as_ref().is_some_and(|(r, ..)| *r <= perfect) {
+                return;
+            }
+            let bound = quick_star_bound(&filled.mesh, self.boundary).unwrap_or(1.0);
+            if bound <= NO_ROOM && self.best.is_some() {
+                self.seen.push(format!("{} (star bound {bound:.3})", words(&filled)));
+                return;
+            }
+            let mut one = *self.embed;
+            one.starts = one.starts.max(1);
+            place_as_it_is(&filled, self.boundary, Some(&one), &self.limited())
+        } else {
+            place(&mut filled, self.problem, self.boundary, Some(self.embed), &self.limited())
+        };
+        let rank = rank(&filled, &placed, prefer);
+        let valid = if placed.is_certified() { format!("{:.3}", placed.worst()) } else { "not certified".to_owned() };
+        self.seen.push(format!("{} ({valid})", words(&filled)));
+        if self.best.as_ref().is_none_or(|(r, ..)| rank < *r) {
+            self.best = Some((rank, filled, placed));
+        }
+    }
+}
+
+fn words(filled: &Filled) -> String {
+    format!("{} hexes by {}", filled.mesh.n_hexes(), filled.route.words())
+}
+
+/// Stars that reach no more than this leave no room for a valid mesh.
+const NO_ROOM: f64 = 1e-6;
 
 impl Route {
     /// In words, for reports.

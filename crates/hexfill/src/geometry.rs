@@ -133,7 +133,7 @@ pub fn place_best(
 }
 
 /// [`place`] without turning.
-fn place_as_it_is(
+pub(crate) fn place_as_it_is(
     filled: &Filled,
     boundary: &[[f64; 3]],
     options: Option<&hexfill_embed::Options>,
