@@ -91,9 +91,10 @@ def fill(surface, out, args, threads):
         mesh = report["meshes"][0]
         geometry = mesh.get("geometry") or {}
         row.update(
-            quads=mesh["quads"], hexes=mesh["hexes"], engine=engine(mesh), claimed=code == 0,
-            interior=mesh.get("interior_vertices"), tried=mesh.get("tried"),
-            claimed_certified=geometry.get("certified"), mean=None,
+            quads=mesh["quads"], hexes=mesh["hexes"], engine=engine(mesh), interior=mesh.get("interior_vertices"),
+            tried=mesh.get("tried"), claimed_certified=geometry.get("certified"),
+            # Without an embedding, exit code 0 says nothing about geometry.
+            claimed=code == 0 and "--no-embed" not in args.more,
         )
     else:
         row["why"] = report.get("error") or row["why"]

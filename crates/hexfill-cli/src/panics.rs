@@ -25,7 +25,16 @@ pub fn guard(run: impl FnOnce() -> ExitCode) -> ExitCode {
 fn ended(run: impl FnOnce() -> ExitCode) -> ExitCode {
     match catch_unwind(AssertUnwindSafe(run)) {
         Ok(code) => code,
-        Err(payload) => code_of(text_of(&*payload)).into(),
+        Err(payload) => {
+            let text = text_of(&*payload);
+            let code = code_of(text);
+            // The flags are not parsed here: a panic may come before, or from, parsing them.
+            if code == Exit::Internal && std::env::args_os().any(|word| word == "--json") {
+                let report = serde_json::json!({ "error": one_line(text), "exit_code": code as u8 });
+                let _ = writeln!(std::io::stdout(), "{report:#}");
+            }
+            code.into()
+        }
     }
 }
 
@@ -48,9 +57,13 @@ fn text_of(payload: &(dyn Any + Send)) -> &str {
 
 /// What the user reads, on one line.
 fn line(text: &str, place: &str) -> String {
-    let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let text = one_line(text);
     let version = env!("CARGO_PKG_VERSION");
     format!("error: internal error, please report this line: hexfill {version}, {place}: {text}")
+}
+
+fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 /// The exit code of a panic with these words.

@@ -23,6 +23,10 @@ fn a_panic_in_all_threads_is_one_line_and_code_70() {
         for word in ["report", "panics.rs:", "provoked"] {
             assert!(stderr.contains(word), "{stderr}");
         }
+        let json = command.arg("--json").output().unwrap();
+        let json = common::json(&String::from_utf8(json.stdout).unwrap());
+        assert_eq!(json["exit_code"], 70);
+        assert!(json["error"].as_str().unwrap().contains("provoked"));
         // With stderr closed at the other end, or full, the code is the same.
         let (reader, writer) = std::io::pipe().unwrap();
         drop(reader);
