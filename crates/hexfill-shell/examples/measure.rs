@@ -52,6 +52,26 @@ fn main() {
             verdict =
                 if judge(&input, &options, &Context::default()).passed(Level::L3) { "proper" } else { "IMPROPER" };
         }
+        if !swept.front.is_empty() {
+            let quads: Vec<[u32; 4]> = surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
+            let describe = |front: &[[u32; 4]], n: u32| {
+                let s = QuadSurface::try_new(n as usize, front).unwrap();
+                let all: Vec<(usize, usize)> =
+                    chords(&s).iter().map(|c| (c.length(), c.self_crossings.len())).collect();
+                println!("  {} quads left, chords (length, self-crossings) {all:?}", front.len());
+            };
+            describe(&swept.front, swept.n_vertices);
+            let state =
+                hexfill_shell::Front::try_from_parts(swept.n_vertices, &quads, &swept.hexes, &swept.front).unwrap();
+            let mut state = state.pillowed().0;
+            hexfill_shell::sweep_front(&mut state, &options, &Context::default());
+            let again = state.finish(None);
+            if again.front.is_empty() {
+                println!("   closed behind pillow")
+            } else {
+                describe(&again.front, again.n_vertices);
+            }
+        }
         println!(
             "{argument}: {} quads, genus {}, {crossings} self-crossings: {} hexes, {} quads left, {time:.2} s, {verdict}",
             surface.n_quads(),

@@ -8,6 +8,9 @@ mod pairs;
 mod plug;
 mod sweep;
 #[cfg(test)]
+mod sweep_tests;
+mod sweeper;
+#[cfg(test)]
 mod test_surfaces;
 mod zip;
 
