@@ -30,6 +30,14 @@ fn main() {
                 options.pillows = k.parse().unwrap();
                 continue;
             }
+            Some(("stir", k)) => {
+                options.stir = k.parse().unwrap();
+                continue;
+            }
+            Some(("restarts", k)) => {
+                options.restarts = k.parse().unwrap();
+                continue;
+            }
             Some(("seed", k)) => {
                 options.seed = k.parse().unwrap();
                 continue;
@@ -61,16 +69,6 @@ fn main() {
                 println!("  {} quads left, chords (length, self-crossings) {all:?}", front.len());
             };
             describe(&swept.front, swept.n_vertices);
-            let state =
-                hexfill_shell::Front::try_from_parts(swept.n_vertices, &quads, &swept.hexes, &swept.front).unwrap();
-            let mut state = state.pillowed().0;
-            hexfill_shell::sweep_front(&mut state, &options, &Context::default());
-            let again = state.finish(None);
-            if again.front.is_empty() {
-                println!("   closed behind pillow")
-            } else {
-                describe(&again.front, again.n_vertices);
-            }
         }
         println!(
             "{argument}: {} quads, genus {}, {crossings} self-crossings: {} hexes, {} quads left, {time:.2} s, {verdict}",

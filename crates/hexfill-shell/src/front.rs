@@ -55,7 +55,7 @@ enum Change {
 }
 
 /// A place in the journal to go back to.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
 pub struct Mark(usize);
 
 /// Why hexes and a front are no state to go on from.
@@ -323,6 +323,15 @@ impl Front {
     /// Whether wants were stated.
     pub(crate) fn has_wants(&self) -> bool {
         !self.want.is_empty()
+    }
+
+    /// The same state without empty slots. Marks lose their meaning.
+    pub(crate) fn compact(&self) -> Self {
+        let mut same = self.with(self.n_vertices(), &self.hexes, &self.quads()).expect("the state is proper");
+        if self.has_wants() {
+            same.want = self.slots().flat_map(|q| 4 * q..4 * q + 4).map(|d| self.want(d)).collect();
+        }
+        same
     }
 
     // Journalled changes.

@@ -6,6 +6,7 @@ mod inside;
 mod lens;
 mod pairs;
 mod plug;
+mod stir;
 mod sweep;
 #[cfg(test)]
 mod sweep_tests;

@@ -4,6 +4,7 @@
 //! chords that cross themselves (see `stir`). On spheres whose chords are simple the sweep closes the void.
 
 use crate::front::{Front, NONE};
+use crate::stir::stir;
 use crate::sweeper::Sweeper;
 use hexfill_mesh::{Context, QuadSurface, StopReason};
 
@@ -20,6 +21,8 @@ pub struct SweepOptions<'a> {
     /// How often to start again, each time with other ties, while quads are left or wants are not met. The best result is kept: fewest quads
     /// left, then lowest cost, then fewest hexes.
     pub restarts: u32,
+    /// How many random flips to try on what is left in the end.
+    pub stir: u32,
     /// Most vertices a lens may have inside; `None`: any number.
     pub largest_lens: Option<u32>,
     /// How many hexes are wanted round each edge of the surface, say its angle / 90 degrees. Lenses whose flips meet the wants come first.
@@ -109,7 +112,12 @@ pub fn sweep(
             break;
         }
     }
-    best.map_or(front, |(best, _)| best).finish(stopped)
+    let mut front = best.map_or(front, |(best, _)| best);
+    if options.stir > 0 && front.n_quads() > 0 && stopped.is_none() {
+        front = front.compact();
+        stopped = stir(&mut front, options.stir, options, ctx);
+    }
+    front.finish(stopped)
 }
 
 /// Empties lenses of a front until none can be emptied; `None`, or why it stopped early.

@@ -94,16 +94,7 @@ impl<'a> Sweeper<'a> {
                 self.widen();
                 continue;
             };
-            if self.version[corner as usize] != version || !self.front.is_quad(corner / 4) {
-                continue;
-            }
-            let Some(lens) = self.finder.find(self.front, corner, self.limit as usize) else { continue };
-            if lens.len() as u32 != size {
-                let size = lens.len() as u32;
-                self.push(level, size, corner);
-                continue;
-            }
-            let lens = lens.to_vec();
+            let Some(lens) = self.current((level, size, 0, corner, version)) else { continue };
             let mark = self.front.mark();
             let most = if self.front.has_wants() { LEVELS[usize::from(level)] } else { f32::INFINITY };
             if !self.empty(lens, most) {
@@ -117,6 +108,39 @@ impl<'a> Sweeper<'a> {
             }
         }
         None
+    }
+
+    /// The inner vertices of an entry's lens. `None` if the entry is void, or the lens has another size now and waits for its turn again.
+    fn current(&mut self, (level, size, _, corner, version): Entry) -> Option<Vec<u32>> {
+        if self.version[corner as usize] != version || !self.front.is_quad(corner / 4) {
+            return None;
+        }
+        let lens = self.finder.find(self.front, corner, self.limit as usize)?;
+        if lens.len() as u32 == size {
+            return Some(lens.to_vec());
+        }
+        let size = lens.len() as u32;
+        self.push(level, size, corner);
+        None
+    }
+
+    /// Looks for lenses at what changed since `mark` and empties them, at any cost. Nothing is made final.
+    pub(crate) fn settle(&mut self, mut mark: Mark) {
+        self.look_near(mark);
+        while let Some(Reverse(entry)) = self.heap.pop() {
+            if let Some(lens) = self.current(entry) {
+                mark = self.front.mark();
+                if self.empty(lens, f32::INFINITY) {
+                    self.look_near(mark);
+                }
+            }
+        }
+    }
+
+    /// Looks for lenses of up to `limit` vertices only, from now on.
+    pub(crate) fn narrow(&mut self, limit: u32) {
+        self.limit = limit.min(self.largest);
+        self.heap.clear();
     }
 
     /// Makes one flip that costs next to nothing, wherever it is, while the budget lasts: it is what the wants ask for, though it empties no lens.

@@ -1,0 +1,84 @@
+//! Stirring: what the sweep leaves is changed at random and swept again.
+//!
+//! A chord with loops cannot be untangled by pushing triangles and emptying lenses alone: two loops cancel only after new crossings were made. So flips
+//! that add quads (2->4, 1->5) or move them (strips, corners) are tried at random places; each is followed by emptying the lenses it brought. What
+//! came of it is kept or taken back by the rule of Metropolis (1953), for an energy of quads left and a fraction of the hexes spent.
+
+use crate::front::Front;
+use crate::glue::Patch;
+use crate::sweep::SweepOptions;
+use crate::sweeper::Sweeper;
+use hexfill_mesh::{Context, Random, StopReason};
+
+/// What one hex costs, in quads.
+const HEX: f64 = 0.2;
+/// Temperature at the start and at the end, in quads.
+const TEMPERATURE: [f64; 2] = [1.2, 0.3];
+/// Largest lens looked for after a random flip.
+const LENS: u32 = 12;
+
+/// Stirs the front by `trials` random flips, or until nothing is left; the best state met is kept. Why it stopped early, if it did.
+pub(crate) fn stir(
+    front: &mut Front,
+    trials: u32,
+    options: &SweepOptions<'_>,
+    ctx: &Context<'_>,
+) -> Option<StopReason> {
+    front.commit();
+    let mut random = Random::new(options.seed ^ 0x5354_4952);
+    let energy = |front: &Front| front.n_quads() as f64 + HEX * front.hexes().len() as f64;
+    let mut sweeper = Sweeper::new(front, options);
+    sweeper.narrow(LENS);
+    let mut now = energy(sweeper.front);
+    let mut best = (sweeper.front.n_quads(), sweeper.front.hexes().len(), sweeper.front.mark());
+    let mut stopped = None;
+    for trial in 0..trials {
+        if sweeper.front.n_quads() == 0 {
+            break;
+        }
+        if trial % 64 == 0 {
+            stopped = ctx.stop();
+            if stopped.is_some() {
+                break;
+            }
+            let (left, hexes) = (sweeper.front.n_quads(), sweeper.front.hexes().len());
+            ctx.report("stirring", trial.into(), Some(trials.into()), || format!("{left} quads left, {hexes} hexes"));
+        }
+        let mark = sweeper.front.mark();
+        if !flip_somewhere(sweeper.front, &mut random) {
+            continue;
+        }
+        sweeper.settle(mark);
+        let after = energy(sweeper.front);
+        let progress = f64::from(trial) / f64::from(trials);
+        let temperature = TEMPERATURE[0] + progress * (TEMPERATURE[1] - TEMPERATURE[0]);
+        if after > now && random.unit() >= ((now - after) / temperature).exp() {
+            sweeper.front.take_back(mark);
+            continue;
+        }
+        now = after;
+        let (quads, hexes) = (sweeper.front.n_quads(), sweeper.front.hexes().len());
+        if (quads, hexes) < (best.0, best.1) {
+            best = (quads, hexes, sweeper.front.mark());
+        } else if sweeper.front.mark() < best.2 {
+            unreachable!("the journal only grows past accepted flips");
+        }
+    }
+    front.take_back(best.2);
+    front.commit();
+    stopped
+}
+
+/// Makes one flip at a random place; whether it was legal.
+fn flip_somewhere(front: &mut Front, random: &mut Random) -> bool {
+    let d = random.below(4 * front.n_slots() as usize) as u32;
+    if !front.is_quad(d / 4) {
+        return false;
+    }
+    match random.below(8) {
+        0 => front.glue_hex(d, Patch::Quad).is_ok(),
+        1..=4 => front.glue_hex(d, Patch::Pair).is_ok(),
+        5 => front.glue_hex(d, Patch::Strip).is_ok(),
+        _ => front.flip(front.origin(d)).is_ok(),
+    }
+}
