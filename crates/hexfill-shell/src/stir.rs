@@ -4,7 +4,7 @@
 //! that add quads (2->4, 1->5) or move them (strips, corners) are tried at random places; each is followed by emptying the lenses it brought. What
 //! came of it is kept or taken back by the rule of Metropolis (1953), for an energy of quads left and a fraction of the hexes spent.
 
-use crate::front::Front;
+use crate::front::{Front, opposite};
 use crate::glue::Patch;
 use crate::sweep::SweepOptions;
 use crate::sweeper::Sweeper;
@@ -67,6 +67,53 @@ pub(crate) fn stir(
     front.take_back(best.2);
     front.commit();
     stopped
+}
+
+/// Number of quads that one chord passes twice. Linear time.
+pub(crate) fn self_crossings(front: &Front) -> usize {
+    let mut of = vec![[0u32; 2]; front.n_slots() as usize];
+    let mut n = 0;
+    for start in front.slots().flat_map(|q| [4 * q, 4 * q + 1]) {
+        if of[start as usize / 4][start as usize % 2] != 0 {
+            continue;
+        }
+        n += 1;
+        let mut at = start;
+        while of[at as usize / 4][at as usize % 2] == 0 {
+            of[at as usize / 4][at as usize % 2] = n;
+            at = front.twin(opposite(at));
+        }
+    }
+    of.into_iter().filter(|[a, b]| a == b && *a != 0).count()
+}
+
+/// Reconnects strands of chords that cross themselves by strips, each of which leaves fewer self-crossings, and sweeps after each.
+pub(crate) fn reconnect(front: &mut Front, options: &SweepOptions<'_>, ctx: &Context<'_>) -> Option<StopReason> {
+    loop {
+        let stopped = Sweeper::new(front, options).run(ctx);
+        if stopped.is_some() || front.n_quads() == 0 {
+            return stopped;
+        }
+        let mut best = (self_crossings(front), usize::MAX, 0);
+        for d in front.slots().flat_map(|q| [4 * q, 4 * q + 1]).collect::<Vec<_>>() {
+            let mark = front.mark();
+            if front.glue_hex(d, Patch::Strip).is_ok() {
+                best = best.min((self_crossings(front), front.n_quads(), d));
+                front.take_back(mark);
+            }
+            if ctx.stop().is_some() {
+                return ctx.stop();
+            }
+        }
+        let (crossings, quads, d) = best;
+        if std::env::var("DEBUG_SHELL").is_ok() {
+            println!("{} quads, {} self-crossings -> {crossings} {quads}", front.n_quads(), self_crossings(front));
+        }
+        if quads == usize::MAX || front.glue_hex(d, Patch::Strip).is_err() {
+            return None;
+        }
+        front.commit();
+    }
 }
 
 /// Makes one flip at a random place; whether it was legal.

@@ -4,7 +4,7 @@
 //! chords that cross themselves (see `stir`). On spheres whose chords are simple the sweep closes the void.
 
 use crate::front::{Front, NONE};
-use crate::stir::stir;
+use crate::stir::{reconnect, stir};
 use crate::sweeper::Sweeper;
 use hexfill_mesh::{Context, QuadSurface, StopReason};
 
@@ -114,6 +114,8 @@ pub fn sweep(
     }
     let mut front = best.map_or(front, |(best, _)| best);
     if options.stir > 0 && front.n_quads() > 0 && stopped.is_none() {
+        front = front.compact();
+        stopped = reconnect(&mut front, options, ctx);
         front = front.compact();
         stopped = stir(&mut front, options.stir, options, ctx);
     }
