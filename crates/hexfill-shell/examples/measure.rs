@@ -30,6 +30,10 @@ fn main() {
                 options.pillows = k.parse().unwrap();
                 continue;
             }
+            Some(("atlas", _)) => {
+                options.atlas = Some(hexfill_search::Atlas::embedded());
+                continue;
+            }
             Some(("stir", k)) => {
                 options.stir = k.parse().unwrap();
                 continue;

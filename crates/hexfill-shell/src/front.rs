@@ -277,6 +277,11 @@ impl Front {
         })
     }
 
+    /// Whether two vertices are both in one cell.
+    pub(crate) fn is_joined(&self, a: u32, b: u32) -> bool {
+        self.pairs.join(a, b).is_some()
+    }
+
     /// The hexes at a vertex.
     pub(crate) fn star(&self, v: u32) -> &[u32] {
         &self.star[v as usize]

@@ -1,5 +1,6 @@
 //! Shelling: closed quad surfaces of any size swept inward by their own dual curves, until nothing is left to fill.
 
+mod close;
 mod front;
 mod glue;
 mod inside;

@@ -12,6 +12,8 @@ use hexfill_mesh::{Context, Random, StopReason};
 
 /// What one hex costs, in quads.
 const HEX: f64 = 0.2;
+/// What a self-crossing costs, in quads.
+const CROSSING: f64 = 1.0;
 /// Temperature at the start and at the end, in quads.
 const TEMPERATURE: [f64; 2] = [1.2, 0.3];
 /// Largest lens looked for after a random flip.
@@ -26,7 +28,15 @@ pub(crate) fn stir(
 ) -> Option<StopReason> {
     front.commit();
     let mut random = Random::new(options.seed ^ 0x5354_4952);
-    let energy = |front: &Front| front.n_quads() as f64 + HEX * front.hexes().len() as f64;
+    let w: Vec<f64> = std::env::var("W").map(|w| w.split(',').map(|x| x.parse().unwrap()).collect()).unwrap_or(vec![
+        HEX,
+        CROSSING,
+        TEMPERATURE[0],
+        TEMPERATURE[1],
+    ]);
+    let energy = |front: &Front| {
+        front.n_quads() as f64 + w[0] * front.hexes().len() as f64 + w[1] * self_crossings(front) as f64
+    };
     let mut sweeper = Sweeper::new(front, options);
     sweeper.narrow(LENS);
     let mut now = energy(sweeper.front);
@@ -51,7 +61,7 @@ pub(crate) fn stir(
         sweeper.settle(mark);
         let after = energy(sweeper.front);
         let progress = f64::from(trial) / f64::from(trials);
-        let temperature = TEMPERATURE[0] + progress * (TEMPERATURE[1] - TEMPERATURE[0]);
+        let temperature = w[2] + progress * (w[3] - w[2]);
         if after > now && random.unit() >= ((now - after) / temperature).exp() {
             sweeper.front.take_back(mark);
             continue;
@@ -124,8 +134,8 @@ fn flip_somewhere(front: &mut Front, random: &mut Random) -> bool {
     }
     match random.below(8) {
         0 => front.glue_hex(d, Patch::Quad).is_ok(),
-        1..=4 => front.glue_hex(d, Patch::Pair).is_ok(),
-        5 => front.glue_hex(d, Patch::Strip).is_ok(),
+        1..=3 => front.glue_hex(d, Patch::Pair).is_ok(),
+        4..=5 => front.glue_hex(d, Patch::Strip).is_ok(),
         _ => front.flip(front.origin(d)).is_ok(),
     }
 }

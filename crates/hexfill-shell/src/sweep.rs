@@ -7,6 +7,7 @@ use crate::front::{Front, NONE};
 use crate::stir::{reconnect, stir};
 use crate::sweeper::Sweeper;
 use hexfill_mesh::{Context, QuadSurface, StopReason};
+use hexfill_search::Atlas;
 
 /// Hexes wanted round an edge of the surface, by its two vertices.
 pub type EdgeWant<'a> = &'a (dyn Fn(u32, u32) -> f32 + Sync);
@@ -25,6 +26,8 @@ pub struct SweepOptions<'a> {
     pub stir: u32,
     /// Most vertices a lens may have inside; `None`: any number.
     pub largest_lens: Option<u32>,
+    /// Fillings for what is left in the end.
+    pub atlas: Option<&'a Atlas>,
     /// How many hexes are wanted round each edge of the surface, say its angle / 90 degrees. Lenses whose flips meet the wants come first.
     pub edge_want: Option<EdgeWant<'a>>,
 }
@@ -118,6 +121,9 @@ pub fn sweep(
         stopped = reconnect(&mut front, options, ctx);
         front = front.compact();
         stopped = stir(&mut front, options.stir, options, ctx);
+    }
+    if let Some(closed) = options.atlas.filter(|_| front.n_quads() > 0).and_then(|atlas| front.closed_from(atlas)) {
+        front = closed;
     }
     front.finish(stopped)
 }
