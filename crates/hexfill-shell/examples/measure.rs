@@ -65,7 +65,6 @@ fn main() {
                 if judge(&input, &options, &Context::default()).passed(Level::L3) { "proper" } else { "IMPROPER" };
         }
         if !swept.front.is_empty() {
-            let quads: Vec<[u32; 4]> = surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
             let describe = |front: &[[u32; 4]], n: u32| {
                 let s = QuadSurface::try_new(n as usize, front).unwrap();
                 let all: Vec<(usize, usize)> =

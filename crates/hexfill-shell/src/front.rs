@@ -292,7 +292,6 @@ impl Front {
         let mut all = self.surface_neighbours[v as usize].clone();
         for &h in &self.star[v as usize] {
             let hex = &self.hexes[h as usize];
-            // After a merge by the zip under way a hex may hold a vertex twice; the pair table rejects it in the end.
             for i in (0..8).filter(|&i| hex[i] == v) {
                 all.extend(hexfill_mesh::cube::CORNER_NEIGHBOURS[i].map(|k| hex[k]));
             }

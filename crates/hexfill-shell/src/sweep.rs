@@ -4,7 +4,7 @@
 //! chords that cross themselves (see `stir`). On spheres whose chords are simple the sweep closes the void.
 
 use crate::front::{Front, NONE};
-use crate::stir::{reconnect, stir};
+use crate::stir::stir;
 use crate::sweeper::Sweeper;
 use hexfill_mesh::{Context, QuadSurface, StopReason};
 use hexfill_search::Atlas;
@@ -22,7 +22,7 @@ pub struct SweepOptions<'a> {
     /// How often to start again, each time with other ties, while quads are left or wants are not met. The best result is kept: fewest quads
     /// left, then lowest cost, then fewest hexes.
     pub restarts: u32,
-    /// How many random flips to try on what is left in the end.
+    /// How many rounds of other flips to try on what is left in the end: the first searches, each later one starts from some random flips.
     pub stir: u32,
     /// Most vertices a lens may have inside; `None`: any number.
     pub largest_lens: Option<u32>,
@@ -117,9 +117,6 @@ pub fn sweep(
     }
     let mut front = best.map_or(front, |(best, _)| best);
     if options.stir > 0 && front.n_quads() > 0 && stopped.is_none() {
-        front = front.compact();
-        stopped = reconnect(&mut front, options, ctx);
-        front = front.compact();
         stopped = stir(&mut front, options.stir, options, ctx);
     }
     if let Some(closed) = options.atlas.filter(|_| front.n_quads() > 0).and_then(|atlas| front.closed_from(atlas)) {
