@@ -3,7 +3,8 @@
 //! A chord with loops cannot be untangled by pushing triangles and emptying lenses alone. Two things help. A strip covers two opposite sides of one
 //! sheet's belt in its hex, so it is a saddle: it *reconnects* two strands of the dual, and a chord that crosses itself may fall into two
 //! that do not. And new crossings (2->4) may let two loops cancel. So flips are tried everywhere, alone and in pairs close to each other; each is followed by
-//! emptying the lenses it brought, and kept if quads + self-crossings become fewer. Where none helps, some are made at random, and it starts again.
+//! emptying the lenses it brought, and kept if quads + self-crossings become fewer. Where none helps, some are made at random, and it starts again;
+//! after half of the rounds behind a pillow.
 
 use crate::front::{Front, Mark, NONE, opposite};
 use crate::glue::Patch;
@@ -83,6 +84,11 @@ pub(crate) fn stir(
     let mut random = Random::new(options.seed ^ 0x5354_4952);
     let mut best = front.clone();
     for round in 0..rounds {
+        if round > 0 && round == rounds / 2 {
+            // Behind a pillow nothing is blocked, and all vertices may be merged.
+            best = best.pillowed().0;
+            *front = best.clone();
+        }
         let stopped = descend(front, &mut random, options, ctx);
         let rank = |front: &Front| (front.n_quads(), front.hexes().len());
         if rank(front) < rank(&best) {
@@ -92,9 +98,13 @@ pub(crate) fn stir(
         ctx.report("stirring", u64::from(round) + 1, Some(rounds.into()), || {
             format!("{left} quads left, {hexes} hexes")
         });
-        if stopped.is_some() || left == 0 {
+        if left == 0 || stopped.is_some() {
             *front = best;
             return stopped;
+        }
+        if let Some(closed) = options.atlas.and_then(|atlas| best.closed_from(atlas)) {
+            *front = closed;
+            return None;
         }
         *front = best.clone();
         let mut kicks = KICKS;

@@ -4,9 +4,10 @@
 //! chords that cross themselves (see `stir`). On spheres whose chords are simple the sweep closes the void.
 
 use crate::front::{Front, NONE};
+use crate::inside::determinant;
 use crate::stir::stir;
 use crate::sweeper::Sweeper;
-use hexfill_mesh::{Context, QuadSurface, StopReason};
+use hexfill_mesh::{Context, QuadId, QuadSurface, StopReason};
 use hexfill_search::Atlas;
 
 /// Hexes wanted round an edge of the surface, by its two vertices.
@@ -59,7 +60,8 @@ pub struct Swept {
     pub stopped: Option<StopReason>,
 }
 
-/// Fills `surface` from its front inward. Each of its components must bound a ball (or a handlebody) of its own. Handles are cut by plugs, which
+/// Fills `surface` from its front inward. Each of its components must bound a ball (or a handlebody) of its own: more than one are swept
+/// only if `points` shows that all face outward. Handles are cut by plugs, which
 /// need `points`, a position for each vertex of the surface; without them a surface with handles is not filled to the end.
 ///
 /// A surface with quads that meet improperly has no proper filling and comes back as it is: no hexes, all quads left.
@@ -69,12 +71,15 @@ pub fn sweep(
     options: &SweepOptions<'_>,
     ctx: &Context<'_>,
 ) -> Swept {
-    let Ok(mut front) = Front::new(surface) else {
+    let points = points.filter(|p| p.len() == surface.n_vertices());
+    let start = (surface.n_components() == 1 || points.is_some_and(|p| all_face_outward(surface, p)))
+        .then(|| Front::new(surface));
+    let Some(Ok(mut front)) = start else {
         let front = surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
         return Swept { n_vertices: surface.n_vertices() as u32, hexes: Vec::new(), front, stopped: None };
     };
     let mut base: Vec<u32> = (0..surface.n_vertices() as u32).collect();
-    let mut points: Option<Vec<[f64; 3]>> = points.filter(|p| p.len() == surface.n_vertices()).map(<[_]>::to_vec);
+    let mut points: Option<Vec<[f64; 3]>> = points.map(<[_]>::to_vec);
     for _ in 0..options.pillows {
         let (layered, below) = front.pillowed();
         front = layered;
@@ -116,7 +121,8 @@ pub fn sweep(
         }
     }
     let mut front = best.map_or(front, |(best, _)| best);
-    if options.stir > 0 && front.n_quads() > 0 && stopped.is_none() {
+    // The boundary of any hex mesh has an even number of quads.
+    if options.stir > 0 && front.n_quads() > 0 && front.n_quads().is_multiple_of(2) && stopped.is_none() {
         stopped = stir(&mut front, options.stir, options, ctx);
     }
     if let Some(closed) = options.atlas.filter(|_| front.n_quads() > 0).and_then(|atlas| front.closed_from(atlas)) {
@@ -128,6 +134,16 @@ pub fn sweep(
 /// Empties lenses of a front until none can be emptied; `None`, or why it stopped early.
 pub fn sweep_front(front: &mut Front, options: &SweepOptions<'_>, ctx: &Context<'_>) -> Option<StopReason> {
     Sweeper::new(front, options).run(ctx)
+}
+
+/// Whether every component encloses a positive volume: none is a cavity of another.
+fn all_face_outward(surface: &QuadSurface, points: &[[f64; 3]]) -> bool {
+    let mut volume = vec![0.0; surface.n_components()];
+    for (q, quad) in surface.quads().iter().enumerate() {
+        let [a, b, c, d] = quad.map(|v| points[v.index()]);
+        volume[surface.component(QuadId::new(q))] += [[a, b, c], [a, c, d]].map(determinant).iter().sum::<f64>();
+    }
+    volume.into_iter().all(|v| v > 0.0)
 }
 
 impl Front {
