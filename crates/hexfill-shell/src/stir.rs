@@ -82,17 +82,20 @@ pub(crate) fn stir(
     ctx: &Context<'_>,
 ) -> Option<StopReason> {
     let mut random = Random::new(options.seed ^ 0x5354_4952);
+    let rank = |front: &Front| (front.n_quads(), front.hexes().len());
+    // The best state, and the one to go on from.
     let mut best = front.clone();
+    let mut from = front.clone();
     for round in 0..rounds {
         if round > 0 && round == rounds / 2 {
             // Behind a pillow nothing is blocked, and all vertices may be merged.
-            best = best.pillowed().0;
-            *front = best.clone();
+            from = best.pillowed().0;
+            *front = from.clone();
         }
         let stopped = descend(front, &mut random, options, ctx);
-        let rank = |front: &Front| (front.n_quads(), front.hexes().len());
+        *front = front.compact();
         if rank(front) < rank(&best) {
-            best = front.compact();
+            best = front.clone();
         }
         let (left, hexes) = rank(&best);
         ctx.report("stirring", u64::from(round) + 1, Some(rounds.into()), || {
@@ -102,23 +105,32 @@ pub(crate) fn stir(
             *front = best;
             return stopped;
         }
-        if let Some(closed) = options.atlas.and_then(|atlas| best.closed_from(atlas)) {
+        if let Some(closed) = options.atlas.and_then(|atlas| front.closed_from(atlas)) {
             *front = closed;
             return None;
         }
-        *front = best.clone();
-        let mut kicks = KICKS;
-        for _ in 0..1000 {
-            let d = random.below(4 * front.n_slots() as usize) as u32;
-            let patch = if random.below(2) == 0 { Patch::Pair } else { Patch::Strip };
-            kicks -= usize::from(make(front, (d, Some(patch))));
-            if kicks == 0 {
-                break;
-            }
+        if front.n_quads() <= from.n_quads() {
+            from = front.clone();
+        } else {
+            *front = from.clone();
         }
+        kick(front, &mut random);
     }
     *front = best;
     None
+}
+
+/// Makes some flips at random places.
+fn kick(front: &mut Front, random: &mut Random) {
+    let mut kicks = KICKS;
+    for _ in 0..1000 {
+        let d = random.below(4 * front.n_slots() as usize) as u32;
+        let patch = if random.below(2) == 0 { Patch::Pair } else { Patch::Strip };
+        kicks -= usize::from(make(front, (d, Some(patch))));
+        if kicks == 0 {
+            break;
+        }
+    }
 }
 
 /// Sweeps, and makes flips that lower the energy, until there is none.
