@@ -30,6 +30,18 @@ fn main() {
                 options.pillows = k.parse().unwrap();
                 continue;
             }
+            Some(("atlas", _)) => {
+                options.atlas = Some(hexfill_search::Atlas::embedded());
+                continue;
+            }
+            Some(("stir", k)) => {
+                options.stir = k.parse().unwrap();
+                continue;
+            }
+            Some(("restarts", k)) => {
+                options.restarts = k.parse().unwrap();
+                continue;
+            }
             Some(("seed", k)) => {
                 options.seed = k.parse().unwrap();
                 continue;
@@ -51,6 +63,15 @@ fn main() {
             let options = hexfill_check::Options::default().up_to(Level::L3);
             verdict =
                 if judge(&input, &options, &Context::default()).passed(Level::L3) { "proper" } else { "IMPROPER" };
+        }
+        if !swept.front.is_empty() {
+            let describe = |front: &[[u32; 4]], n: u32| {
+                let s = QuadSurface::try_new(n as usize, front).unwrap();
+                let all: Vec<(usize, usize)> =
+                    chords(&s).iter().map(|c| (c.length(), c.self_crossings.len())).collect();
+                println!("  {} quads left, chords (length, self-crossings) {all:?}", front.len());
+            };
+            describe(&swept.front, swept.n_vertices);
         }
         println!(
             "{argument}: {} quads, genus {}, {crossings} self-crossings: {} hexes, {} quads left, {time:.2} s, {verdict}",

@@ -55,7 +55,7 @@ enum Change {
 }
 
 /// A place in the journal to go back to.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
 pub struct Mark(usize);
 
 /// Why hexes and a front are no state to go on from.
@@ -277,6 +277,11 @@ impl Front {
         })
     }
 
+    /// Whether two vertices are both in one cell.
+    pub(crate) fn is_joined(&self, a: u32, b: u32) -> bool {
+        self.pairs.join(a, b).is_some()
+    }
+
     /// The hexes at a vertex.
     pub(crate) fn star(&self, v: u32) -> &[u32] {
         &self.star[v as usize]
@@ -287,7 +292,6 @@ impl Front {
         let mut all = self.surface_neighbours[v as usize].clone();
         for &h in &self.star[v as usize] {
             let hex = &self.hexes[h as usize];
-            // After a merge by the zip under way a hex may hold a vertex twice; the pair table rejects it in the end.
             for i in (0..8).filter(|&i| hex[i] == v) {
                 all.extend(hexfill_mesh::cube::CORNER_NEIGHBOURS[i].map(|k| hex[k]));
             }
@@ -323,6 +327,15 @@ impl Front {
     /// Whether wants were stated.
     pub(crate) fn has_wants(&self) -> bool {
         !self.want.is_empty()
+    }
+
+    /// The same state without empty slots. Marks lose their meaning.
+    pub(crate) fn compact(&self) -> Self {
+        let mut same = self.with(self.n_vertices(), &self.hexes, &self.quads()).expect("the state is proper");
+        if self.has_wants() {
+            same.want = self.slots().flat_map(|q| 4 * q..4 * q + 4).map(|d| self.want(d)).collect();
+        }
+        same
     }
 
     // Journalled changes.

@@ -19,10 +19,14 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
+/// The determinant of three vectors: six times the signed volume of the tetrahedron with the origin.
+pub(crate) fn determinant([a, b, c]: [[f64; 3]; 3]) -> f64 {
+    a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])
+}
+
 fn solid_angle(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> f64 {
     let [la, lb, lc] = [a, b, c].map(|x| dot(x, x).sqrt());
-    let det =
-        a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
+    let det = determinant([a, b, c]);
     let below = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
     2.0 * det.atan2(below)
 }

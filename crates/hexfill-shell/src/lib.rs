@@ -5,6 +5,7 @@
 //! left -> `lens` the smallest lens of its dual -> `zip` flips that empty it -> `sweep` until nothing is left.
 
 mod angles;
+mod close;
 mod compress;
 mod deviation;
 mod front;
@@ -20,10 +21,14 @@ mod residual;
 mod shell;
 mod solve;
 mod split_star;
+mod stir;
 mod sweep;
+mod sweeper;
 mod void;
 mod zip;
 
+#[cfg(test)]
+mod sweep_tests;
 #[cfg(test)]
 mod test_surfaces;
 

@@ -67,7 +67,6 @@ fn pairs_of_quad(q: &[u32; 4]) -> [(u32, u32, Join); 6] {
 
 impl PairTable {
     /// What joins two vertices, if anything.
-    #[cfg(test)]
     pub(crate) fn join(&self, a: u32, b: u32) -> Option<Join> {
         self.0.get(&key(a, b)).map(|p| p.join)
     }

@@ -285,7 +285,7 @@ impl Front {
         let rings = rings(self);
         let mut cuts: FxHashMap<usize, Vec<Quadrangulation>> = FxHashMap::default();
         for (r, ring) in rings.iter().enumerate() {
-            if ring.separates(self) || !fan_is_inside(self.surface(), points, &ring.rim(self, points)) {
+            if ring.separates(self) {
                 continue;
             }
             let strands = Strands::of(self, ring);
@@ -295,7 +295,14 @@ impl Front {
             }
         }
         plugs.sort_unstable();
-        plugs.into_iter().find_map(|(_, _, r, c)| self.plugged(&rings[r], &cuts[&rings[r].0.len()][c], points))
+        // Positions are looked at last, and once a ring: winding numbers take time.
+        let mut meridian = vec![None; rings.len()];
+        plugs.into_iter().find_map(|(_, _, r, c)| {
+            let ring = &rings[r];
+            let inside =
+                meridian[r].get_or_insert_with(|| fan_is_inside(self.surface(), points, &ring.rim(self, points)));
+            if *inside { self.plugged(ring, &cuts[&ring.0.len()][c], points) } else { None }
+        })
     }
 }
 

@@ -242,6 +242,10 @@ impl Front {
                 }
             }
         };
+        // Two corners of one cell stay two; so no quad ever holds a vertex twice.
+        if self.star(gone).iter().any(|&h| self.hexes()[h as usize].contains(&kept)) {
+            return Err(Refused::Improper);
+        }
         let near = self.neighbours(kept);
         let common = self.neighbours(gone).into_iter().filter(|v| near.binary_search(v).is_ok());
         let common: Vec<u32> = common.collect();
