@@ -15,6 +15,7 @@ use hexfill_geometry::{Vector, add, best_direction, corner_angle, cross, dihedra
 use hexfill_mesh::{Dart, Edge, QuadId, QuadSurface, VertexId};
 use rayon::prelude::*;
 use serde::{Serialize, Serializer};
+use std::f64::consts::{PI, TAU};
 
 /// What bounds the meshes of a surface; each list worst first, ties by id.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -65,8 +66,11 @@ pub struct EdgeLimit {
     /// The edge.
     #[serde(serialize_with = "serialize_edge")]
     pub edge: Edge,
-    /// The angle in degrees, the smaller of those at its two ends; 0 to 360. 0 where a quad is degenerate.
+    /// The angle in degrees, the smaller of those at its two ends; 0 where a quad is degenerate. Angles are told from their full turns by the
+    /// other end, so they may leave 0 to 360 where the surface overlaps itself.
     pub degrees: f64,
+    /// The larger of the two; near or above 360 the outside closes up.
+    pub most_degrees: f64,
     /// How many hexes the edge wants round it: degrees / 90.
     pub hexes: f64,
     /// No hex mesh of a surface that does not cross itself has a larger worst corner at this edge: 1 from 90 degrees on, else the sine.
@@ -140,16 +144,28 @@ pub fn surface_limits(surface: &QuadSurface, points: &[[f64; 3]]) -> Option<Surf
         .with_min_len(1024)
         .filter(|&&d| d < surface.twin(d))
         .map(|&d| {
-            let angle = at_origin(d).min(at_origin(surface.twin(d)));
-            let degrees = angle.to_degrees();
-            let bound = if degrees < 90.0 { angle.sin() } else { 1.0 };
-            EdgeLimit { edge: Edge::new(surface.origin(d), surface.target(d)), degrees, hexes: degrees / 90.0, bound }
+            let (least, most) = unwrapped(at_origin(d), at_origin(surface.twin(d)));
+            let (degrees, most_degrees) = (least.to_degrees(), most.to_degrees());
+            let bound = if degrees < 90.0 { least.sin().max(0.0) } else { 1.0 };
+            let edge = Edge::new(surface.origin(d), surface.target(d));
+            EdgeLimit { edge, degrees, most_degrees, hexes: degrees / 90.0, bound }
         })
         .collect();
     vertices.par_sort_by(|a, b| a.bound.total_cmp(&b.bound).then(a.vertex.cmp(&b.vertex)));
     corners.par_sort_by(|a, b| a.bound.total_cmp(&b.bound).then((a.quad, a.vertex).cmp(&(b.quad, b.vertex))));
     edges.par_sort_by(|a, b| a.degrees.total_cmp(&b.degrees).then(a.edge.cmp(&b.edge)));
     Some(SurfaceLimits { vertices, corners, edges })
+}
+
+/// The dihedral angles at the two ends of an edge, known up to full turns, as one that changes by less than half a turn along it; ascending.
+/// Of the two ways to take a turn off or put one on, the one nearer to a flat edge.
+fn unwrapped(a: f64, b: f64) -> (f64, f64) {
+    let (low, high) = (a.min(b), a.max(b));
+    match () {
+        () if high - low <= PI => (low, high),
+        () if low + high > TAU => (high - TAU, low),
+        () => (high, low + TAU),
+    }
 }
 
 /// The direction from a dart's origin to the corner before it.
@@ -203,5 +219,18 @@ mod tests {
         points = POSITIONS.map(|[x, y, z]| [f64::from(x), f64::from(y) + 10.0 * f64::from(z), f64::from(z)]).to_vec();
         let limits = surface_limits(&surface, &points).unwrap();
         assert!(limits.edges[0].degrees < 6.0 && limits.edges[0].hexes < 0.07);
+    }
+
+    #[test]
+    fn angles_are_told_from_their_full_turns() {
+        let turn = |a: f64, b: f64| {
+            let (a, b) = unwrapped(a.to_radians(), b.to_radians());
+            (a.to_degrees().round(), b.to_degrees().round())
+        };
+        assert_eq!(turn(90.0, 5.0), (5.0, 90.0));
+        // The fish's tail: the outside closes up towards one end of the edge, and a little more.
+        assert_eq!(turn(1.0, 226.0), (226.0, 361.0));
+        assert_eq!(turn(10.0, 352.0), (-8.0, 10.0));
+        assert_eq!(turn(10.0, 348.0), (348.0, 370.0));
     }
 }

@@ -10,13 +10,15 @@
 //! What a star can reach is computed from the directions of its fixed edges alone ([`hexfill_geometry::climb_star`]), so it says
 //! what positions allow, not what they will be.
 //! Where the hexes at v do not lie one a quad round one edge (meshes of the construction), all hexes at v may be shrunk first, which puts
-//! such a layer there; where that does not help either, a layer under the whole surface.
+//! such a layer there; where stars without any valid placement are left, a layer under the whole surface may help.
 //! Related: N. Reberol et al., *Robust topological construction of all-hexahedral boundary layer meshes*, 2023.
 //!
 //! Invariant: boundary quads and the ids of their vertices never change; new vertices follow the old ones.
 
 mod cells;
 mod choose;
+#[cfg(test)]
+mod measure;
 #[cfg(test)]
 mod tests;
 
@@ -32,7 +34,7 @@ pub struct SplitOptions {
     pub below: f64,
     /// A split must raise its vertex by this much at least.
     pub gain: f64,
-    /// Whether a layer of hexes under the whole surface may be added, where nothing else helps.
+    /// Whether a layer of hexes under the whole surface may be added, where nothing else makes a star valid.
     pub pillow: bool,
 }
 
@@ -95,7 +97,8 @@ pub fn split_stars(
     let mut splits = split_all(&chooser, &mut cells, &poor, context);
     let left = chooser.still_poor(&cells, &poor);
     let mut pillowed = false;
-    if options.pillow && !left.is_empty() && context.stop().is_none() {
+    let n_invalid = |left: &[(u32, f64)]| left.iter().filter(|l| l.1 <= choose::NOTHING).count();
+    if options.pillow && n_invalid(&left) > 0 && context.stop().is_none() {
         // From the start again: splits made without the layer are not needed behind it.
         let mut layered = Cells::new(mesh);
         let all: Vec<u32> = (0..mesh.n_hexes() as u32).collect();
@@ -103,8 +106,7 @@ pub fn split_stars(
         layered.shrink(&all, &skin);
         let made = split_all(&chooser, &mut layered, &poor, context);
         let poor_behind = chooser.still_poor(&layered, &poor);
-        let rank = |left: &[(u32, f64)]| (left.iter().filter(|l| l.1 <= 0.0).count(), left.len());
-        if rank(&poor_behind) < rank(&left) && context.stop().is_none() {
+        if n_invalid(&poor_behind) < n_invalid(&left) && context.stop().is_none() {
             (cells, splits, pillowed) = (layered, made, true);
         }
     }

@@ -33,7 +33,7 @@ const REACH: usize = 4;
 const MOST_ENDS: usize = 16;
 
 /// A star that reaches no more is not valid: rounding.
-const NOTHING: f64 = 1e-6;
+pub(super) const NOTHING: f64 = 1e-6;
 
 /// Stands for the new end of a vertex's new edge.
 const NEW: u32 = u32::MAX;

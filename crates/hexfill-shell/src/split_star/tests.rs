@@ -9,7 +9,7 @@ use hexfill_mesh::{Context, HexMesh, Random};
 type Point = [f64; 3];
 
 /// A layer of hexes under the whole boundary.
-fn pillowed(mesh: &HexMesh) -> HexMesh {
+pub(super) fn pillowed(mesh: &HexMesh) -> HexMesh {
     let mut cells = Cells::new(mesh);
     let all: Vec<u32> = (0..mesh.n_hexes() as u32).collect();
     let quads: Vec<[u32; 4]> = mesh.boundary_quads().iter().map(|q| q.map(|v| v.0)).collect();
@@ -50,7 +50,7 @@ fn for_each_cell(size: [usize; 3], mut f: impl FnMut([usize; 3])) {
 }
 
 /// Asserts L1 to L3 with the boundary of `before`.
-fn assert_proper(made: &HexMesh, before: &HexMesh) {
+pub(super) fn assert_proper(made: &HexMesh, before: &HexMesh) {
     let hexes = made.hexes_raw();
     let quads: Vec<[u32; 4]> = before.boundary_quads().iter().map(|q| q.map(|v| v.0)).collect();
     let mut judged = Judged::connectivity(made.n_vertices(), &hexes);
