@@ -2,4 +2,4 @@
 
 mod split_star;
 
-pub use split_star::{SplitOptions, SplitStars, SplitVertex, split_stars};
+pub use split_star::{Layer, SplitOptions, SplitStars, SplitVertex, split_stars};
