@@ -66,8 +66,8 @@ pub struct EdgeLimit {
     /// The edge.
     #[serde(serialize_with = "serialize_edge")]
     pub edge: Edge,
-    /// The angle in degrees, the smaller of those at its two ends; 0 where a quad is degenerate. Angles are told from their full turns by the
-    /// other end, so they may leave 0 to 360 where the surface overlaps itself.
+    /// The angle in degrees, the smaller of those at its two ends; 0 where a quad is degenerate. At one end it may
+    /// exceed 360, where the surface overlaps itself.
     pub degrees: f64,
     /// The larger of the two; near or above 360 the outside closes up.
     pub most_degrees: f64,
@@ -133,20 +133,28 @@ pub fn surface_limits(surface: &QuadSurface, points: &[[f64; 3]]) -> Option<Surf
             CornerLimit { quad: d.quad(), vertex: surface.origin(d), degrees: angle.to_degrees(), bound }
         })
         .collect();
-    // The angle at an edge's origin, inside: from the right to the left, where the dart's own quad is.
-    let at_origin = |d: Dart| {
-        let left = along_back(&along, d);
-        let right = along(surface.twin(d).next());
-        dihedral_angle(along(d), right, left).unwrap_or(0.0)
+    // The angles inside at both ends of an edge, ascending. Between the ends both quads turn about the edge as straight lines between their two
+    // sides do, by less than half a turn, so the angle at one end tells the other with its full turns; in a valid mesh both are positive.
+    let angles = |d: Dart| -> Option<(f64, f64)> {
+        let (twin, e) = (surface.twin(d), along(d));
+        let (left, right) = (along_back(&along, d), along(twin.next()));
+        let (far_left, far_right) = (along(d.next()), along_back(&along, twin));
+        let turn = |from: Vector, to: Vector| dihedral_angle(e, from, to).map(|t| if t > PI { t - TAU } else { t });
+        let here = dihedral_angle(e, right, left)?;
+        let there = here + turn(left, far_left)? - turn(right, far_right)?;
+        let (least, most) = (here.min(there), here.max(there));
+        // Zero up to rounding is no reason for a further turn.
+        let turns = if least < -1e-9 { (-least / TAU).ceil() * TAU } else { 0.0 };
+        Some(((least + turns).max(0.0), most + turns))
     };
     let mut edges: Vec<EdgeLimit> = all
         .par_iter()
         .with_min_len(1024)
         .filter(|&&d| d < surface.twin(d))
         .map(|&d| {
-            let (least, most) = unwrapped(at_origin(d), at_origin(surface.twin(d)));
+            let (least, most) = angles(d).unwrap_or((0.0, 0.0));
             let (degrees, most_degrees) = (least.to_degrees(), most.to_degrees());
-            let bound = if degrees < 90.0 { least.sin().max(0.0) } else { 1.0 };
+            let bound = if degrees < 90.0 { least.sin() } else { 1.0 };
             let edge = Edge::new(surface.origin(d), surface.target(d));
             EdgeLimit { edge, degrees, most_degrees, hexes: degrees / 90.0, bound }
         })
@@ -155,17 +163,6 @@ pub fn surface_limits(surface: &QuadSurface, points: &[[f64; 3]]) -> Option<Surf
     corners.par_sort_by(|a, b| a.bound.total_cmp(&b.bound).then((a.quad, a.vertex).cmp(&(b.quad, b.vertex))));
     edges.par_sort_by(|a, b| a.degrees.total_cmp(&b.degrees).then(a.edge.cmp(&b.edge)));
     Some(SurfaceLimits { vertices, corners, edges })
-}
-
-/// The dihedral angles at the two ends of an edge, known up to full turns, as one that changes by less than half a turn along it; ascending.
-/// Of the two ways to take a turn off or put one on, the one nearer to a flat edge.
-fn unwrapped(a: f64, b: f64) -> (f64, f64) {
-    let (low, high) = (a.min(b), a.max(b));
-    match () {
-        () if high - low <= PI => (low, high),
-        () if low + high > TAU => (high - TAU, low),
-        () => (high, low + TAU),
-    }
 }
 
 /// The direction from a dart's origin to the corner before it.
@@ -223,14 +220,19 @@ mod tests {
 
     #[test]
     fn angles_are_told_from_their_full_turns() {
-        let turn = |a: f64, b: f64| {
-            let (a, b) = unwrapped(a.to_radians(), b.to_radians());
-            (a.to_degrees().round(), b.to_degrees().round())
+        // The bottom, twisted about edge 0-1, leads at 1 10 degrees beyond the front: the surface overlaps itself.
+        let (surface, mut points) = cube();
+        let edge = |points: &[Vector]| {
+            let limits = surface_limits(&surface, points).unwrap();
+            limits.edges.into_iter().find(|e| e.edge == Edge::new(VertexId(0), VertexId(1))).unwrap()
         };
-        assert_eq!(turn(90.0, 5.0), (5.0, 90.0));
-        // The fish's tail: the outside closes up towards one end of the edge, and a little more.
-        assert_eq!(turn(1.0, 226.0), (226.0, 361.0));
-        assert_eq!(turn(10.0, 352.0), (-8.0, 10.0));
-        assert_eq!(turn(10.0, 348.0), (348.0, 370.0));
+        let (sine, cosine) = 10f64.to_radians().sin_cos();
+        points[2] = [1.0, -sine, cosine];
+        let found = edge(&points);
+        assert!((found.degrees - 350.0).abs() < 1e-6 && (found.most_degrees - 450.0).abs() < 1e-6, "{found:?}");
+        // 10 degrees before it they leave a thin wedge.
+        points[2] = [1.0, sine, cosine];
+        let found = edge(&points);
+        assert!((found.degrees - 10.0).abs() < 1e-6 && (found.most_degrees - 90.0).abs() < 1e-6, "{found:?}");
     }
 }
