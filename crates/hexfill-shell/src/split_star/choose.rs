@@ -17,7 +17,7 @@ use std::sync::Mutex;
 const GOOD: f64 = 0.7;
 
 /// How much more the vertex to be split counts than the others. *Measured* on four cubes round a point behind a layer: with equal
-/// weights a split at one quad wins, whose star could reach 0.447 and whose mesh cannot be valid; with this one a split at three, 0.666 and 0.29.
+/// weights a split at one quad wins, whose star could reach 0.447, and no valid placement was found; with this one a split at three, 0.666 and 0.29.
 const WEIGHT: f64 = 10.0;
 
 /// What one more hex costs, in penalty.
