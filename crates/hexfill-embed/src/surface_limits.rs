@@ -15,6 +15,7 @@ use hexfill_geometry::{Vector, add, best_direction, corner_angle, cross, dihedra
 use hexfill_mesh::{Dart, Edge, QuadId, QuadSurface, VertexId};
 use rayon::prelude::*;
 use serde::{Serialize, Serializer};
+use std::f64::consts::{PI, TAU};
 
 /// What bounds the meshes of a surface; each list worst first, ties by id.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -65,8 +66,11 @@ pub struct EdgeLimit {
     /// The edge.
     #[serde(serialize_with = "serialize_edge")]
     pub edge: Edge,
-    /// The angle in degrees, the smaller of those at its two ends; 0 to 360. 0 where a quad is degenerate.
+    /// The angle in degrees, the smaller of those at its two ends; 0 where a quad is degenerate. At one end it may
+    /// exceed 360, where the surface overlaps itself.
     pub degrees: f64,
+    /// The larger of the two; near or above 360 the outside closes up.
+    pub most_degrees: f64,
     /// How many hexes the edge wants round it: degrees / 90.
     pub hexes: f64,
     /// No hex mesh of a surface that does not cross itself has a larger worst corner at this edge: 1 from 90 degrees on, else the sine.
@@ -129,21 +133,30 @@ pub fn surface_limits(surface: &QuadSurface, points: &[[f64; 3]]) -> Option<Surf
             CornerLimit { quad: d.quad(), vertex: surface.origin(d), degrees: angle.to_degrees(), bound }
         })
         .collect();
-    // The angle at an edge's origin, inside: from the right to the left, where the dart's own quad is.
-    let at_origin = |d: Dart| {
-        let left = along_back(&along, d);
-        let right = along(surface.twin(d).next());
-        dihedral_angle(along(d), right, left).unwrap_or(0.0)
+    // The angles inside at both ends of an edge, ascending. Between the ends both quads turn about the edge as straight lines between their two
+    // sides do, by less than half a turn, so the angle at one end tells the other with its full turns; in a valid mesh both are positive.
+    let angles = |d: Dart| -> Option<(f64, f64)> {
+        let (twin, e) = (surface.twin(d), along(d));
+        let (left, right) = (along_back(&along, d), along(twin.next()));
+        let (far_left, far_right) = (along(d.next()), along_back(&along, twin));
+        let turn = |from: Vector, to: Vector| dihedral_angle(e, from, to).map(|t| if t > PI { t - TAU } else { t });
+        let here = dihedral_angle(e, right, left)?;
+        let there = here + turn(left, far_left)? - turn(right, far_right)?;
+        let (least, most) = (here.min(there), here.max(there));
+        // Zero up to rounding is no reason for a further turn.
+        let turns = if least < -1e-9 { (-least / TAU).ceil() * TAU } else { 0.0 };
+        Some(((least + turns).max(0.0), most + turns))
     };
     let mut edges: Vec<EdgeLimit> = all
         .par_iter()
         .with_min_len(1024)
         .filter(|&&d| d < surface.twin(d))
         .map(|&d| {
-            let angle = at_origin(d).min(at_origin(surface.twin(d)));
-            let degrees = angle.to_degrees();
-            let bound = if degrees < 90.0 { angle.sin() } else { 1.0 };
-            EdgeLimit { edge: Edge::new(surface.origin(d), surface.target(d)), degrees, hexes: degrees / 90.0, bound }
+            let (least, most) = angles(d).unwrap_or((0.0, 0.0));
+            let (degrees, most_degrees) = (least.to_degrees(), most.to_degrees());
+            let bound = if degrees < 90.0 { least.sin() } else { 1.0 };
+            let edge = Edge::new(surface.origin(d), surface.target(d));
+            EdgeLimit { edge, degrees, most_degrees, hexes: degrees / 90.0, bound }
         })
         .collect();
     vertices.par_sort_by(|a, b| a.bound.total_cmp(&b.bound).then(a.vertex.cmp(&b.vertex)));
@@ -203,5 +216,23 @@ mod tests {
         points = POSITIONS.map(|[x, y, z]| [f64::from(x), f64::from(y) + 10.0 * f64::from(z), f64::from(z)]).to_vec();
         let limits = surface_limits(&surface, &points).unwrap();
         assert!(limits.edges[0].degrees < 6.0 && limits.edges[0].hexes < 0.07);
+    }
+
+    #[test]
+    fn angles_are_told_from_their_full_turns() {
+        // The bottom, twisted about edge 0-1, leads at 1 10 degrees beyond the front: the surface overlaps itself.
+        let (surface, mut points) = cube();
+        let edge = |points: &[Vector]| {
+            let limits = surface_limits(&surface, points).unwrap();
+            limits.edges.into_iter().find(|e| e.edge == Edge::new(VertexId(0), VertexId(1))).unwrap()
+        };
+        let (sine, cosine) = 10f64.to_radians().sin_cos();
+        points[2] = [1.0, -sine, cosine];
+        let found = edge(&points);
+        assert!((found.degrees - 350.0).abs() < 1e-6 && (found.most_degrees - 450.0).abs() < 1e-6, "{found:?}");
+        // 10 degrees before it they leave a thin wedge.
+        points[2] = [1.0, sine, cosine];
+        let found = edge(&points);
+        assert!((found.degrees - 10.0).abs() < 1e-6 && (found.most_degrees - 90.0).abs() < 1e-6, "{found:?}");
     }
 }

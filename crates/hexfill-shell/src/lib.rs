@@ -35,6 +35,6 @@ mod test_surfaces;
 pub use front::{Front, FrontError, Mark};
 pub use glue::Patch;
 pub use shell::{ShellOptions, Shelled, Shelling, shell};
-pub use split_star::{SplitOptions, SplitStars, SplitVertex, split_stars};
+pub use split_star::{Layer, SplitOptions, SplitStars, SplitVertex, split_stars};
 pub use sweep::{EdgeWant, SweepOptions, Swept, sweep, sweep_front};
 pub use zip::Refused;

@@ -10,7 +10,7 @@
 //! What a star can reach is computed from the directions of its fixed edges alone ([`hexfill_geometry::climb_star`]), so it says
 //! what positions allow, not what they will be.
 //! Where the hexes at v do not lie one a quad round one edge (meshes of the construction), all hexes at v may be shrunk first, which puts
-//! such a layer there; where that does not help either, a layer under the whole surface.
+//! such a layer there; where stars without any valid placement are left, a layer under the whole surface may help.
 //! Related: N. Reberol et al., *Robust topological construction of all-hexahedral boundary layer meshes*, 2023.
 //!
 //! Invariant: boundary quads and the ids of their vertices never change; new vertices follow the old ones.
@@ -24,21 +24,34 @@ use cells::Cells;
 use choose::{Choice, Chooser};
 use hexfill_mesh::{Context, HexMesh, QuadSurface, VertexId};
 
+/// When a layer of hexes goes under the whole surface first.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Layer {
+    /// Never.
+    Never,
+    /// If stars are left that no placement makes valid, and fewer are with the layer.
+    #[default]
+    IfInvalid,
+    /// Always: the mesh behind it need not have any edges at surface vertices.
+    Always,
+}
+
 /// When to split.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct SplitOptions {
     /// Vertices whose star can reach less than this scaled Jacobian are split, if that helps.
     pub below: f64,
-    /// A split must raise its vertex by this much at least.
+    /// A split must raise its vertex by this much at least; a fifth of it will do where no placement is valid.
     pub gain: f64,
-    /// Whether a layer of hexes under the whole surface may be added, where nothing else helps.
-    pub pillow: bool,
+    /// Whether a layer of hexes goes under the whole surface.
+    pub layer: Layer,
 }
 
 impl Default for SplitOptions {
     fn default() -> Self {
-        Self { below: 0.1, gain: 0.05, pillow: true }
+        Self { below: 0.1, gain: 0.05, layer: Layer::default() }
     }
 }
 
@@ -67,12 +80,12 @@ pub struct SplitStars {
     /// The vertices whose star still cannot reach [`SplitOptions::below`], ascending, with what it can.
     pub left: Vec<(VertexId, f64)>,
     /// Whether a layer under the whole surface was added.
-    pub pillowed: bool,
+    pub layered: bool,
 }
 
 /// Splits the stars of surface vertices that are too poor, where that helps. See the module page.
 ///
-/// `points[v]` is the position of every vertex v on the boundary, in any unit; other entries are not read. Returns `None` if nothing was split
+/// `points[v]` is the position of every vertex v on the boundary, in any unit; other entries are not read. Returns `None` if nothing was changed
 /// (none is poor, nothing helps, or the boundary is no closed oriented surface with finite positions). Deterministic, for any
 /// number of threads, unless the context cuts it short; then the splits so far are returned.
 ///
@@ -91,28 +104,35 @@ pub fn split_stars(
     }
     let chooser = Chooser::new(&surface, points, *options);
     let poor = chooser.vertices_no_direction_serves();
-    let mut cells = Cells::new(mesh);
-    let mut splits = split_all(&chooser, &mut cells, &poor, context);
-    let left = chooser.still_poor(&cells, &poor);
-    let mut pillowed = false;
-    if options.pillow && !left.is_empty() && context.stop().is_none() {
-        // From the start again: splits made without the layer are not needed behind it.
-        let mut layered = Cells::new(mesh);
+    let behind_layer = || {
+        let mut cells = Cells::new(mesh);
         let all: Vec<u32> = (0..mesh.n_hexes() as u32).collect();
-        let skin: Vec<[u32; 4]> = quads;
-        layered.shrink(&all, &skin);
-        let made = split_all(&chooser, &mut layered, &poor, context);
-        let poor_behind = chooser.still_poor(&layered, &poor);
-        let rank = |left: &[(u32, f64)]| (left.iter().filter(|l| l.1 <= 0.0).count(), left.len());
-        if rank(&poor_behind) < rank(&left) && context.stop().is_none() {
-            (cells, splits, pillowed) = (layered, made, true);
+        cells.shrink(&all, &quads);
+        let splits = split_all(&chooser, &mut cells, &poor, context);
+        (cells, splits)
+    };
+    let mut layered = options.layer == Layer::Always;
+    let (mut cells, mut splits) = if layered {
+        behind_layer()
+    } else {
+        let mut cells = Cells::new(mesh);
+        let splits = split_all(&chooser, &mut cells, &poor, context);
+        (cells, splits)
+    };
+    let n_invalid =
+        |cells: &Cells| chooser.still_poor(cells, &poor).iter().filter(|left| left.1 <= choose::NOTHING).count();
+    if options.layer == Layer::IfInvalid && n_invalid(&cells) > 0 && context.stop().is_none() {
+        // From the start again: splits made without the layer are not needed behind it.
+        let other = behind_layer();
+        if n_invalid(&other.0) < n_invalid(&cells) && context.stop().is_none() {
+            ((cells, splits), layered) = (other, true);
         }
     }
-    if splits.is_empty() {
+    if splits.is_empty() && !layered {
         return None;
     }
     let left = chooser.still_poor(&cells, &poor).into_iter().map(|(v, value)| (VertexId(v), value)).collect();
-    Some(SplitStars { mesh: cells.to_mesh().ok()?, splits, left, pillowed })
+    Some(SplitStars { mesh: cells.to_mesh().ok()?, splits, left, layered })
 }
 
 /// Splits the poor vertices, worst first, until none can be helped.

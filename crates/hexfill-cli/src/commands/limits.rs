@@ -16,6 +16,9 @@ const NOTHING: f64 = 1e-9;
 /// An edge with a smaller dihedral angle is called sharp (degrees).
 const SHARP: f64 = 20.0;
 
+/// An edge with a larger one is a slit: the outside nearly closes up there, or the surface overlaps itself (degrees).
+const SLIT: f64 = 345.0;
+
 /// A corner within so many degrees of 0 is called a needle, of 180 nearly flat.
 const NEEDLE: f64 = 15.0;
 
@@ -54,6 +57,8 @@ pub(super) struct LimitsInfo {
     poor_direction: Named<VertexLimit>,
     /// Edges with a small dihedral angle.
     sharp_edges: Named<EdgeLimit>,
+    /// Edges whose outside nearly closes up.
+    slit_edges: Named<EdgeLimit>,
     /// Corners of nearly 180 degrees.
     flat_corners: Named<CornerLimit>,
     /// Corners of nearly 0 degrees, or at an edge of length 0.
@@ -77,6 +82,7 @@ pub(super) fn describe(surface: &QuadSurface, points: &[[f64; 3]]) -> Option<Lim
         no_direction: Named::of(&limits.vertices, |v| v.bound <= NOTHING),
         poor_direction: Named::of(&limits.vertices, |v| v.bound > NOTHING && v.bound < POOR),
         sharp_edges: Named::of(&limits.edges, |e| e.degrees < SHARP),
+        slit_edges: Named::of(&limits.edges, |e| e.most_degrees > SLIT),
         flat_corners: Named::of(&limits.corners, is_flat),
         needle_corners: Named::of(&limits.corners, is_needle),
         reflex_corners: Named::of(&limits.corners, |c| c.degrees > 180.0),
@@ -101,6 +107,9 @@ impl LimitsInfo {
                 vertex,
             ),
             self.sharp_edges.line("sharp edge", "sharp edges", edge),
+            self.slit_edges.line("edge along a slit", "edges along slits", |e| {
+                format!("{} (up to {:.1} degrees)", e.edge, e.most_degrees)
+            }),
             self.flat_corners.line("nearly flat corner", "nearly flat corners", corner),
             self.needle_corners.line("needle", "needles", corner),
             self.reflex_corners.line("reflex corner", "reflex corners", corner),

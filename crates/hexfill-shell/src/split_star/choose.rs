@@ -17,7 +17,7 @@ use std::sync::Mutex;
 const GOOD: f64 = 0.7;
 
 /// How much more the vertex to be split counts than the others. *Measured* on four cubes round a point behind a layer: with equal
-/// weights a split at one quad wins, whose star could reach 0.447 and whose mesh cannot be valid; with this one a split at three, 0.666 and 0.29.
+/// weights a split at one quad wins, whose star could reach 0.447, and no valid placement was found; with this one a split at three, 0.666 and 0.29.
 const WEIGHT: f64 = 10.0;
 
 /// What one more hex costs, in penalty.
@@ -33,7 +33,7 @@ const REACH: usize = 4;
 const MOST_ENDS: usize = 16;
 
 /// A star that reaches no more is not valid: rounding.
-const NOTHING: f64 = 1e-6;
+pub(super) const NOTHING: f64 = 1e-6;
 
 /// Stands for the new end of a vertex's new edge.
 const NEW: u32 = u32::MAX;
@@ -48,7 +48,7 @@ pub(super) struct Choice {
     /// The quads of the surface they were taken for.
     quads: Vec<Dart>,
     /// The penalty it takes away.
-    pub(super) worth: f64,
+    worth: f64,
 }
 
 /// The surface and what stars on it can reach.
@@ -171,27 +171,6 @@ impl<'a> Chooser<'a> {
         found.into_iter().next()
     }
 
-    #[cfg(test)]
-    pub(super) fn all_choices(&self, cells: &Cells, v: u32) -> Vec<Choice> {
-        let fan: Vec<Dart> = self.surface.round_vertex(self.dart[v as usize].unwrap()).collect();
-        let k = fan.len();
-        let mut found = Vec::new();
-        let known = Known::default();
-        for start in 0..k {
-            for length in 1..k {
-                let arc: Vec<Dart> = (0..length).map(|i| fan[(start + i) % k]).collect();
-                if let Some(c) = self.judge(cells, &known, v, arc, 0.0) {
-                    let g = self.grow(cells, &known, v, c.clone());
-                    if g.set != c.set {
-                        found.push(g);
-                    }
-                    found.push(c);
-                }
-            }
-        }
-        found
-    }
-
     /// Takes neighbouring quads in, one at a time, as long as that helps.
     fn grow(&self, cells: &Cells, known: &Known, v: u32, mut choice: Choice) -> Choice {
         for _ in 0..REACH {
@@ -258,7 +237,12 @@ impl<'a> Chooser<'a> {
 
     /// What the star of w must reach after a split of v: v itself gains, no other becomes poor, or poorer.
     fn least_after(&self, v: u32, w: u32, before: f64) -> f64 {
-        if w == v { before + self.options.gain } else { before.min(self.options.below) }
+        match () {
+            () if w != v => before.min(self.options.below),
+            // Where a quad has a needle there is little to gain, but all to have it valid.
+            () if before <= NOTHING => 0.2 * self.options.gain,
+            () => before + self.options.gain,
+        }
     }
 
     /// [`value`](Self::value), computed once.
