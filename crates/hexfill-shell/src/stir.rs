@@ -22,14 +22,12 @@ const KICKS: usize = 3;
 /// Number of quads that one chord passes twice. Linear time.
 fn self_crossings(front: &Front) -> usize {
     let mut of = vec![[NONE; 2]; front.n_slots() as usize];
-    let mut n = 0;
-    for start in front.slots().flat_map(|q| [4 * q, 4 * q + 1]) {
+    for (n, start) in (0..).zip(front.slots().flat_map(|q| [4 * q, 4 * q + 1])) {
         let mut at = start;
         while of[at as usize / 4][at as usize % 2] == NONE {
             of[at as usize / 4][at as usize % 2] = n;
             at = front.twin(opposite(at));
         }
-        n += 1;
     }
     of.into_iter().filter(|[a, b]| a == b && *a != NONE).count()
 }
