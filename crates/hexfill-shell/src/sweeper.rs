@@ -182,7 +182,14 @@ impl<'a> Sweeper<'a> {
         self.look_near(mark);
         if self.front.has_wants() {
             self.is_to_try.resize(self.front.n_slots() as usize, false);
-            for q in self.front.changed_slots(mark) {
+            let changed = self.front.changed_slots(mark).into_iter().filter(|&q| self.front.is_quad(q));
+            // All quads at their corners: a flip depends on what is wanted at its rim.
+            let vertices = changed.flat_map(|q| self.front.quad(q));
+            let near = vertices.flat_map(|v| self.front.round_vertex(self.front.dart_of(v)).map(|d| d / 4));
+            let mut near: Vec<u32> = near.collect();
+            near.sort_unstable();
+            near.dedup();
+            for q in near {
                 if !std::mem::replace(&mut self.is_to_try[q as usize], true) {
                     self.to_try.push(q);
                 }
