@@ -158,7 +158,7 @@ impl LensFinder {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use hexfill_mesh::generate::{cube_surface, octagonal_spindle, voxel_surface};
+    use hexfill_mesh::generate::{cube_surface, voxel_surface};
 
     fn smallest(front: &Front, limit: usize) -> Vec<usize> {
         let mut finder = LensFinder::default();
@@ -178,11 +178,5 @@ mod tests {
             assert_eq!(smallest(&front, n), Vec::<usize>::new());
             assert_eq!(smallest(&front, n + 1), vec![n + 1; 24]);
         }
-    }
-
-    #[test]
-    fn the_spindle_has_loops_only() {
-        let front = Front::new(&octagonal_spindle()).unwrap();
-        println!("{:?}", smallest(&front, 10));
     }
 }

@@ -17,6 +17,6 @@ mod test_surfaces;
 mod zip;
 
 pub use front::{Front, FrontError, Mark};
-pub use glue::Patch;
+pub use stir::stir_front;
 pub use sweep::{EdgeWant, SweepOptions, Swept, sweep, sweep_front};
 pub use zip::Refused;

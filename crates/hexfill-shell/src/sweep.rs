@@ -1,11 +1,12 @@
 //! Sweep: a surface is filled from its front inward by emptying the smallest lens of the front's dual, again and again.
 //!
 //! First come whole layers (pillows) if asked for, then the plugs of handles, then the sweep itself (see `sweeper`), then what is done about
-//! chords that cross themselves (see `stir`). On spheres whose chords are simple the sweep closes the void.
+//! chords that cross themselves (see `stir`),
+//! and at last the atlas. On spheres whose chords are simple the sweep alone closes the void.
 
 use crate::front::{Front, NONE};
 use crate::inside::determinant;
-use crate::stir::stir;
+use crate::stir::stir_front;
 use crate::sweeper::Sweeper;
 use hexfill_mesh::{Context, QuadId, QuadSurface, StopReason};
 use hexfill_search::Atlas;
@@ -131,7 +132,7 @@ pub fn sweep(
     let mut front = best.map_or(front, |(best, _)| best);
     // The boundary of any hex mesh has an even number of quads.
     if options.stir > 0 && front.n_quads() > 0 && front.n_quads().is_multiple_of(2) && stopped.is_none() {
-        stopped = stir(&mut front, options.stir, options, ctx);
+        stopped = stir_front(&mut front, options.stir, options, ctx);
     }
     if let Some(closed) = options.atlas.filter(|_| front.n_quads() > 0).and_then(|atlas| front.closed_from(atlas)) {
         front = closed;

@@ -27,7 +27,7 @@ fn handles_are_plugged() {
     let (pen, points) = read_obj(include_str!("../../../corpus/surfaces/bamboo_pen.obj"));
     let options = SweepOptions { pillows: 1, ..Default::default() };
     let swept = sweep(&pen, Some(&points), &options, &Context::default());
-    println!("{}", judged(&pen, &swept));
+    assert!(judged(&pen, &swept) <= 2280);
 }
 
 /// The state that a result describes, checked.
@@ -111,7 +111,6 @@ fn voxel_solids_are_their_voxels() {
         let want = |a: u32, b: u32| angles[&(a.min(b), a.max(b))];
         let options = SweepOptions { edge_want: Some(&want), restarts: 20, ..Default::default() };
         let swept = sweep(&surface, None, &options, &Context::default());
-        println!("{name} {cells} {} {}", swept.hexes.len(), swept.front.len());
         assert_eq!(judged(&surface, &swept), cells, "{name}");
     }
 }
@@ -139,15 +138,6 @@ fn random_voxel_solids() {
         let options = SweepOptions { edge_want: Some(&want), restarts: 20, ..Default::default() };
         let swept = sweep(&surface, None, &options, &Context::default());
         checked(&surface, &swept);
-        if swept.hexes.len() != filled.len() {
-            println!(
-                "seed {seed} {size:?} {} quads, {} cells: {} hexes {} left",
-                surface.n_quads(),
-                filled.len(),
-                swept.hexes.len(),
-                swept.front.len()
-            );
-        }
         if swept.front.is_empty() {
             exact += usize::from(judged(&surface, &swept) == filled.len());
         }
