@@ -119,11 +119,7 @@ fn kick(front: &mut Front, random: &mut Random) {
     let mut kicks = KICKS;
     for _ in 0..1000 {
         let d = random.below(4 * front.n_slots() as usize) as u32;
-        let patch = match random.below(8) {
-            0 => Patch::Quad,
-            1..=3 => Patch::Pair,
-            _ => Patch::Strip,
-        };
+        let patch = if random.below(2) == 0 { Patch::Pair } else { Patch::Strip };
         kicks -= usize::from(make(front, (d, Some(patch))));
         if kicks == 0 {
             break;
