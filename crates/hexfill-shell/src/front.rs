@@ -318,6 +318,11 @@ impl Front {
         }
     }
 
+    /// Forgets what is wanted.
+    pub(crate) fn clear_wants(&mut self) {
+        self.want.clear();
+    }
+
     /// How many hexes are still wanted round the edge of a dart.
     #[inline]
     pub(crate) fn want(&self, d: u32) -> f32 {

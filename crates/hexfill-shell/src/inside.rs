@@ -31,10 +31,19 @@ fn solid_angle(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> f64 {
     2.0 * det.atan2(below)
 }
 
+fn centroid(polygon: &[[f64; 3]]) -> [f64; 3] {
+    let n = polygon.len() as f64;
+    polygon.iter().fold([0.0; 3], |s, p| [0, 1, 2].map(|c| s[c] + p[c] / n))
+}
+
+/// Whether the centroid of a closed polygon lies inside the surface.
+pub(crate) fn centroid_is_inside(quads: &[[u32; 4]], points: &[[f64; 3]], polygon: &[[f64; 3]]) -> bool {
+    winding_number(quads, points, centroid(polygon)) > 0.5
+}
+
 /// Whether the fan from the centroid of a closed polygon to its sides lies inside the surface, as far as samples tell.
 pub(crate) fn fan_is_inside(quads: &[[u32; 4]], points: &[[f64; 3]], polygon: &[[f64; 3]]) -> bool {
-    let n = polygon.len() as f64;
-    let centre = polygon.iter().fold([0.0; 3], |s, p| [s[0] + p[0] / n, s[1] + p[1] / n, s[2] + p[2] / n]);
+    let centre = centroid(polygon);
     let is_inside = |p| winding_number(quads, points, p) > 0.5;
     let between = |p: [f64; 3], t: f64| [0, 1, 2].map(|c| centre[c] + t * (p[c] - centre[c]));
     is_inside(centre)

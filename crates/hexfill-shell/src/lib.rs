@@ -33,8 +33,8 @@ mod sweep_tests;
 mod test_surfaces;
 
 pub use front::{Front, FrontError, Mark};
-pub use glue::Patch;
 pub use shell::{ShellOptions, Shelled, Shelling, shell};
 pub use split_star::{Layer, SplitOptions, SplitStars, SplitVertex, split_stars};
+pub use stir::stir_front;
 pub use sweep::{EdgeWant, SweepOptions, Swept, sweep, sweep_front};
 pub use zip::Refused;

@@ -10,8 +10,11 @@
 //! essential), then the fewest hexes.
 
 use crate::front::{Front, NONE, next, opposite, prev};
-use crate::inside::fan_is_inside;
+use crate::inside::{centroid_is_inside, fan_is_inside};
 use rustc_hash::FxHashMap;
+
+/// Grids are tried for polygons of up to this many sides; their number grows with the square of it.
+const LARGEST_GRID: usize = 32;
 
 /// A polygon cut into quads: corners `0..k` are those of the polygon, further ones lie inside.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -50,7 +53,8 @@ impl Quadrangulation {
     /// All that are tried for a k-gon.
     fn all(k: usize) -> Vec<Self> {
         let mut all: Vec<Self> = if k == 4 { vec![Self::fan(4, 0)] } else { (0..k).map(|i| Self::fan(k, i)).collect() };
-        for a in 1..k / 2 {
+        let most = if k <= LARGEST_GRID { k / 2 } else { 0 };
+        for a in 1..most {
             // From the opposite corner, and with a and b exchanged from the next one, it is the same grid.
             all.extend((0..k / 2).map(|i| Self::grid(k, a, i)).filter(|g| g.quads.len() > 1));
         }
@@ -285,7 +289,7 @@ impl Front {
         let rings = rings(self);
         let mut cuts: FxHashMap<usize, Vec<Quadrangulation>> = FxHashMap::default();
         for (r, ring) in rings.iter().enumerate() {
-            if ring.separates(self) {
+            if ring.separates(self) || !centroid_is_inside(self.surface(), points, &ring.rim(self, points)) {
                 continue;
             }
             let strands = Strands::of(self, ring);
@@ -295,7 +299,7 @@ impl Front {
             }
         }
         plugs.sort_unstable();
-        // Positions are looked at last, and once a ring: winding numbers take time.
+        // The whole fan is looked at last, and once a ring: winding numbers take time.
         let mut meridian = vec![None; rings.len()];
         plugs.into_iter().find_map(|(_, _, r, c)| {
             let ring = &rings[r];

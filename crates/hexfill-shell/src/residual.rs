@@ -9,7 +9,7 @@ use hexfill_mesh::{Context, QuadSurface};
 use hexfill_search::{Atlas, FillOptions, MAX_QUADS, fill_avoiding};
 
 /// Cavities that inward flips may look at, for a residual with its blocked pairs and for one in a pillow.
-const CAVITIES: u64 = 30_000;
+const CAVITIES: u64 = 10_000;
 /// Cavities kept on each level.
 const BEAM: usize = 200;
 

@@ -7,9 +7,11 @@ use crate::front::Front;
 use crate::lift::lift;
 use crate::residual::fill_residual;
 use crate::solve::solve;
+use crate::stir::stir_front;
 use crate::sweep::{SweepOptions, sweep_front};
 use crate::void::Void;
 use hexfill_mesh::{Context, HexMesh, QuadSurface};
+use hexfill_search::Atlas;
 use rayon::prelude::*;
 
 /// What to try.
@@ -74,6 +76,8 @@ const MIN_RESTARTS: u64 = 4;
 const CONTINUED: usize = 4;
 /// Residuals that are filled.
 const RESIDUALS: usize = 4;
+/// Rounds of stirring for one of them.
+const STIRRING: u32 = 20;
 /// Surfaces of more quads are not swept by flips without compression too.
 const MOST_FINE: usize = 20_000;
 
@@ -195,10 +199,19 @@ impl<'a> Start<'a> {
         }
         // Nothing closed: the smallest residuals are filled.
         fronts.truncate(RESIDUALS);
-        let filled: Vec<Hexes> = fronts.par_iter().filter_map(|front| fill_residual(front, ctx)).collect();
+        let filled: Vec<Hexes> = fronts.par_iter().flat_map_iter(|front| close_residual(front, ctx)).collect();
         *left = if filled.is_empty() { smallest.min(*left) } else { 0 };
         filled
     }
+}
+
+/// A residual filled as it is, and stirred until it closes.
+fn close_residual(front: &Front, ctx: &Context<'_>) -> Vec<Hexes> {
+    let quiet = Context { progress: None, ..*ctx };
+    let mut stirred = front.clone();
+    let options = SweepOptions { atlas: Some(Atlas::embedded()), ..SweepOptions::default() };
+    stir_front(&mut stirred, STIRRING, &options, &quiet);
+    [fill_residual(front, &quiet), fill_residual(&stirred, &quiet)].into_iter().flatten().collect()
 }
 
 /// Lifts those that no other beats in both cost and hexes; returns how many.

@@ -22,14 +22,12 @@ const KICKS: usize = 3;
 /// Number of quads that one chord passes twice. Linear time.
 fn self_crossings(front: &Front) -> usize {
     let mut of = vec![[NONE; 2]; front.n_slots() as usize];
-    let mut n = 0;
-    for start in front.slots().flat_map(|q| [4 * q, 4 * q + 1]) {
+    for (n, start) in (0..).zip(front.slots().flat_map(|q| [4 * q, 4 * q + 1])) {
         let mut at = start;
         while of[at as usize / 4][at as usize % 2] == NONE {
             of[at as usize / 4][at as usize % 2] = n;
             at = front.twin(opposite(at));
         }
-        n += 1;
     }
     of.into_iter().filter(|[a, b]| a == b && *a != NONE).count()
 }
@@ -74,13 +72,9 @@ fn near(front: &Front, mark: Mark) -> Vec<u32> {
     slots
 }
 
-/// Stirs the front in `rounds` rounds, or until nothing is left; the best state met is kept. Why it stopped early, if it did.
-pub(crate) fn stir(
-    front: &mut Front,
-    rounds: u32,
-    options: &SweepOptions<'_>,
-    ctx: &Context<'_>,
-) -> Option<StopReason> {
+/// Stirs the front in `rounds` rounds, or until nothing is left or the atlas of the options (if given) closes it; the best state met is kept.
+/// `None`, or why it stopped early. An odd number of quads never closes: do not ask.
+pub fn stir_front(front: &mut Front, rounds: u32, options: &SweepOptions<'_>, ctx: &Context<'_>) -> Option<StopReason> {
     let mut random = Random::new(options.seed ^ 0x5354_4952);
     let rank = |front: &Front| (front.n_quads(), front.hexes().len());
     // The best state, and the one to go on from.

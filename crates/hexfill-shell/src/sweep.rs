@@ -1,11 +1,12 @@
 //! Sweep: a surface is filled from its front inward by emptying the smallest lens of the front's dual, again and again.
 //!
 //! First come whole layers (pillows) if asked for, then the plugs of handles, then the sweep itself (see `sweeper`), then what is done about
-//! chords that cross themselves (see `stir`). On spheres whose chords are simple the sweep closes the void.
+//! chords that cross themselves (see `stir`),
+//! and at last the atlas. On spheres whose chords are simple the sweep alone closes the void.
 
 use crate::front::{Front, NONE};
 use crate::inside::determinant;
-use crate::stir::stir;
+use crate::stir::stir_front;
 use crate::sweeper::Sweeper;
 use hexfill_mesh::{Context, QuadId, QuadSurface, StopReason};
 use hexfill_search::Atlas;
@@ -43,6 +44,8 @@ impl std::fmt::Debug for SweepOptions<'_> {
     }
 }
 
+/// Wants count as met when the flips cost less than this in all.
+const MET: f64 = 1e-3;
 /// What is wanted round the edges behind a pillow: this much of the surface's difference from flat.
 const BEHIND_PILLOW: f32 = 0.3;
 
@@ -106,24 +109,30 @@ pub fn sweep(
     }
     let mut best: Option<(Front, f64)> = None;
     let mut stopped = None;
-    for restart in 0..=options.restarts {
-        let mut attempt = front.clone();
-        let seed = options.seed.wrapping_add(u64::from(restart));
-        let mut sweeper = Sweeper::new(&mut attempt, &SweepOptions { seed, ..*options });
+    // The last attempt is one without wants, if no other closed: it may, and then costs nothing worse than a search.
+    let attempts = options.restarts.saturating_add(1);
+    for attempt in 0..attempts.saturating_add(u32::from(front.has_wants())) {
+        let closed = best.as_ref().is_some_and(|(front, _)| front.n_quads() == 0);
+        if stopped.is_some() || closed && (attempt == attempts || best.as_ref().is_some_and(|(_, cost)| *cost < MET)) {
+            break;
+        }
+        let mut state = front.clone();
+        if attempt == attempts {
+            state.clear_wants();
+        }
+        let seed = options.seed.wrapping_add(u64::from(attempt % attempts));
+        let mut sweeper = Sweeper::new(&mut state, &SweepOptions { seed, ..*options });
         stopped = sweeper.run(ctx);
         let cost = sweeper.cost;
         let rank = |front: &Front, cost: f64| (front.n_quads(), cost, front.hexes().len());
-        if best.as_ref().is_none_or(|(front, least)| rank(&attempt, cost) < rank(front, *least)) {
-            best = Some((attempt, cost));
-        }
-        if stopped.is_some() || best.as_ref().is_some_and(|(front, cost)| front.n_quads() == 0 && *cost < 1e-3) {
-            break;
+        if best.as_ref().is_none_or(|(front, least)| rank(&state, cost) < rank(front, *least)) {
+            best = Some((state, cost));
         }
     }
     let mut front = best.map_or(front, |(best, _)| best);
     // The boundary of any hex mesh has an even number of quads.
     if options.stir > 0 && front.n_quads() > 0 && front.n_quads().is_multiple_of(2) && stopped.is_none() {
-        stopped = stir(&mut front, options.stir, options, ctx);
+        stopped = stir_front(&mut front, options.stir, options, ctx);
     }
     if let Some(closed) = options.atlas.filter(|_| front.n_quads() > 0).and_then(|atlas| front.closed_from(atlas)) {
         front = closed;

@@ -27,7 +27,7 @@ fn handles_are_plugged() {
     let (pen, points) = read_obj(include_str!("../../../corpus/surfaces/bamboo_pen.obj"));
     let options = SweepOptions { pillows: 1, ..Default::default() };
     let swept = sweep(&pen, Some(&points), &options, &Context::default());
-    println!("{}", judged(&pen, &swept));
+    assert!(judged(&pen, &swept) <= 2280);
 }
 
 /// The state that a result describes, checked.
@@ -80,7 +80,7 @@ fn cut_triangulation(n_points: u32, seed: u64) -> QuadSurface {
 
 #[test]
 fn cut_triangulations_take_a_third_of_their_quads() {
-    for seed in 0..60 {
+    for seed in 0..40 {
         let surface = cut_triangulation(6 + 2 * seed as u32, seed);
         if !hexfill_mesh::is_proper(&surface) {
             continue;
@@ -96,7 +96,8 @@ fn cut_triangulations_take_a_third_of_their_quads() {
 
 #[test]
 fn voxel_solids_are_their_voxels() {
-    let letters: [(&str, [usize; 3], fn([usize; 3]) -> bool); 4] = [
+    type Letter = (&'static str, [usize; 3], fn([usize; 3]) -> bool);
+    let letters: [Letter; 4] = [
         ("L", [6, 6, 3], |[x, y, _]| x < 3 || y < 3),
         ("T", [9, 6, 3], |[x, y, _]| y > 2 || (3..6).contains(&x)),
         ("U", [9, 6, 3], |[x, y, _]| y < 3 || !(3..6).contains(&x)),
@@ -110,7 +111,6 @@ fn voxel_solids_are_their_voxels() {
         let want = |a: u32, b: u32| angles[&(a.min(b), a.max(b))];
         let options = SweepOptions { edge_want: Some(&want), restarts: 20, ..Default::default() };
         let swept = sweep(&surface, None, &options, &Context::default());
-        println!("{name} {cells} {} {}", swept.hexes.len(), swept.front.len());
         assert_eq!(judged(&surface, &swept), cells, "{name}");
     }
 }
@@ -138,15 +138,6 @@ fn random_voxel_solids() {
         let options = SweepOptions { edge_want: Some(&want), restarts: 20, ..Default::default() };
         let swept = sweep(&surface, None, &options, &Context::default());
         checked(&surface, &swept);
-        if swept.hexes.len() != filled.len() {
-            println!(
-                "seed {seed} {size:?} {} quads, {} cells: {} hexes {} left",
-                surface.n_quads(),
-                filled.len(),
-                swept.hexes.len(),
-                swept.front.len()
-            );
-        }
         if swept.front.is_empty() {
             exact += usize::from(judged(&surface, &swept) == filled.len());
         }
@@ -159,8 +150,8 @@ fn random_voxel_solids() {
 fn random_spheres_close() {
     let mut open = Vec::new();
     let (mut n_quads, mut n_hexes) = (0, 0);
-    for seed in 0..120 {
-        let surface = random_sphere(10 + 2 * (seed as usize / 6), seed).unwrap();
+    for seed in 0..40 {
+        let surface = random_sphere(10 + 2 * (seed as usize / 2), seed).unwrap();
         let options = SweepOptions { seed, stir: 30, atlas: Some(Atlas::embedded()), ..Default::default() };
         let swept = sweep(&surface, None, &options, &Context::default());
         checked(&surface, &swept);
@@ -172,5 +163,5 @@ fn random_spheres_close() {
         }
     }
     println!("{n_hexes} hexes for {n_quads} quads; open: {open:?}");
-    assert!(open.len() <= 2);
+    assert!(open.len() <= 1);
 }

@@ -8,7 +8,7 @@
 //! those are found by following the chords back. A lens that changed otherwise is noticed when its turn comes.
 //!
 //! Where wants are stated (see `zip`), a lens is first emptied by flips that cost next to nothing, and single such flips are made though they empty
-//! no lens; only then come flips that cost more, level by level.
+//! no lens; only then come all others, smallest lens first, and in it the flip that costs least.
 
 use crate::front::{Front, Mark, next, opposite};
 use crate::glue::Patch;
@@ -19,7 +19,7 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 /// Highest cost of a flip at each level; a lens that cannot be emptied at one level has another chance at the next.
-const LEVELS: [f32; 4] = [0.3, 1.0, 3.0, f32::INFINITY];
+const LEVELS: [f32; 2] = [0.3, f32::INFINITY];
 
 /// A lens in the heap: level, size, noise, corner, and the corner's version when it was looked at.
 type Entry = (u8, u32, u32, u32, u32);
@@ -40,9 +40,11 @@ pub(crate) struct Sweeper<'a> {
     largest: u32,
     /// Up to this size lenses are looked for before a lens has its chance at a higher level.
     wide: u32,
-    /// Flips that empty no lens and may still be made, and the first quad to try.
+    /// Flips that empty no lens and may still be made.
     budget: u32,
-    next_slot: u32,
+    /// Slots of quads where one has still to be tried.
+    to_try: Vec<u32>,
+    is_to_try: Vec<bool>,
     /// Sum of the costs of all flips.
     pub(crate) cost: f64,
     random: Option<Random>,
@@ -52,6 +54,7 @@ impl<'a> Sweeper<'a> {
     pub(crate) fn new(front: &'a mut Front, options: &SweepOptions<'_>) -> Self {
         let n_darts = 4 * front.n_slots() as usize;
         let n_vertices = front.n_quads() as u32 + 2;
+        let n_slots = front.n_slots();
         Self {
             front,
             finder: LensFinder::default(),
@@ -61,9 +64,10 @@ impl<'a> Sweeper<'a> {
             inside: Stamps::default(),
             limit: 0,
             budget: 8 * n_vertices,
-            next_slot: 0,
+            to_try: (0..n_slots).rev().collect(),
+            is_to_try: vec![true; n_slots as usize],
             cost: 0.0,
-            wide: options.largest_lens.unwrap_or(u32::MAX).min(n_vertices).min(8 + 4 * n_vertices.isqrt()),
+            wide: options.largest_lens.unwrap_or(u32::MAX).min(n_vertices).min(4 + n_vertices.isqrt()),
             largest: options.largest_lens.unwrap_or(u32::MAX).min(n_vertices),
             random: (options.seed != 0).then(|| Random::new(options.seed)),
         }
@@ -145,12 +149,11 @@ impl<'a> Sweeper<'a> {
 
     /// Makes one flip that costs next to nothing, wherever it is, while the budget lasts: it is what the wants ask for, though it empties no lens.
     fn flip_anywhere(&mut self) -> bool {
-        while self.budget > 0 && self.next_slot < self.front.n_slots() {
-            let q = self.next_slot;
-            self.next_slot += 1;
+        while let Some(q) = self.to_try.pop().filter(|_| self.budget > 0) {
+            self.is_to_try[q as usize] = false;
             // Each corner of the quad, and the two strips through it.
             for i in 0..6 {
-                if !self.front.is_quad(q) {
+                if q >= self.front.n_slots() || !self.front.is_quad(q) {
                     break;
                 }
                 let mark = self.front.mark();
@@ -177,8 +180,22 @@ impl<'a> Sweeper<'a> {
     /// Looks at what changed since `mark` and makes it final.
     fn changed(&mut self, mark: Mark) {
         self.look_near(mark);
+        if self.front.has_wants() {
+            self.is_to_try.resize(self.front.n_slots() as usize, false);
+            let changed = self.front.changed_slots(mark).into_iter().filter(|&q| self.front.is_quad(q));
+            // All quads at their corners: a flip depends on what is wanted at its rim.
+            let vertices = changed.flat_map(|q| self.front.quad(q));
+            let near = vertices.flat_map(|v| self.front.round_vertex(self.front.dart_of(v)).map(|d| d / 4));
+            let mut near: Vec<u32> = near.collect();
+            near.sort_unstable();
+            near.dedup();
+            for q in near {
+                if !std::mem::replace(&mut self.is_to_try[q as usize], true) {
+                    self.to_try.push(q);
+                }
+            }
+        }
         self.front.commit();
-        self.next_slot = 0;
     }
 
     /// Empties a lens by flips at its arcs, none of which costs more than `most`. The front is unchanged if that does not end with fewer quads.
@@ -204,10 +221,10 @@ impl<'a> Sweeper<'a> {
             return (0..lens.len()).find(|&i| self.is_at_arc(lens[i]) && self.front.flip(lens[i]).is_ok());
         }
         let mut best: Option<(f32, usize)> = None;
-        for i in 0..lens.len() {
-            if self.is_at_arc(lens[i]) {
+        for (i, &v) in lens.iter().enumerate() {
+            if self.is_at_arc(v) {
                 let mark = self.front.mark();
-                if let Ok(cost) = self.front.flip(lens[i]) {
+                if let Ok(cost) = self.front.flip(v) {
                     self.front.take_back(mark);
                     if cost <= most && best.is_none_or(|(least, _)| cost < least) {
                         best = Some((cost, i));
@@ -246,7 +263,8 @@ impl<'a> Sweeper<'a> {
 
     /// Looks for lenses of twice the size.
     fn widen(&mut self) {
-        self.limit = (2 * self.limit).max(4).min(self.largest);
+        let most = if self.limit < self.wide { self.wide } else { self.largest };
+        self.limit = (2 * self.limit).max(4).min(most);
         self.look_everywhere();
     }
 
