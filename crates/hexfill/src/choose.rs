@@ -4,13 +4,14 @@
 //! The order of meshes: certified ones first, then those whose worst scaled Jacobian is at least [`GOOD`], then fewest
 //! hexes for their quality ([`Prefer`]).
 
-use crate::fill::{FillError, FillOptions, Filled, Route, Strategy, construct, search, shelled};
+use crate::fill::{FillError, FillOptions, Filled, Route, Strategy, construct, search, shelled, verify};
 use crate::geometry::{Placed, place, place_as_it_is};
 use crate::placed_fill::{Next, PlaceOptions, PlacedFill, no_room};
 use crate::problem::Problem;
 use hexfill_embed::quick_star_bound;
 use hexfill_mesh::{Context, StopReason};
 use hexfill_search::MAX_QUADS;
+use hexfill_shell::{Layer, SplitOptions, split_stars};
 use serde::Serialize;
 
 /// The worst scaled Jacobian from which on a mesh is good enough to compute on.
@@ -75,7 +76,7 @@ pub(crate) fn fill_best(
         search(surface, &FillOptions { inward_cavities: 1, ..options.clone() }, ctx, &mut result)?;
     }
     for filled in result.meshes.drain(..) {
-        trial.consider(filled);
+        trial.consider(filled)?;
     }
     // Where one component lies in another, shells do not sweep.
     let shelled = if surface.n_components() == 1 { shelled(problem, options, ctx, &mut result)? } else { Vec::new() };
@@ -83,7 +84,7 @@ pub(crate) fn fill_best(
         if ctx.stop().is_some() && trial.best.is_some() {
             break;
         }
-        trial.consider(filled);
+        trial.consider(filled)?;
     }
     let mut why_none = None;
     if options.strategy == Strategy::Auto && !trial.is_good() && ctx.stop().is_none() {
@@ -92,20 +93,20 @@ pub(crate) fn fill_best(
         if small && why_none.is_none() && !has_valid {
             search(surface, options, ctx, &mut result)?;
             for filled in result.meshes.drain(..) {
-                trial.consider(filled);
+                trial.consider(filled)?;
             }
             let next = Next { problem, options, embed, boundary };
             if !trial.is_good()
                 && let Some((filled, _)) = next.more_fillings(&|| trial.limited(), ctx, &mut result.tried)?
             {
-                trial.consider(filled);
+                trial.consider(filled)?;
             }
         }
         let certified = trial.class().is_some_and(|class| class < 2);
         if (trial.best.is_none() || why_none.is_none() && !certified) && ctx.stop().is_none() {
             construct(problem, options, ctx, &mut result)?;
             for filled in result.meshes.drain(..) {
-                trial.consider(filled);
+                trial.consider(filled)?;
             }
         }
     }
@@ -149,18 +150,21 @@ impl<'a> Trial<'a> {
     }
 
     /// Embeds a mesh and keeps it if it is the best.
-    fn consider(&mut self, mut filled: Filled) {
+    fn consider(&mut self, mut filled: Filled) -> Result<(), FillError> {
         let prefer = self.options.prefer;
         let placed = if filled.route == Route::Shelling {
             // Its surface vertices lie where the surface's do, so there is one way to place it.
             let perfect = (0, within(filled.mesh.n_hexes(), 1.0, prefer));
             if self.best.as_ref().is_some_and(|(r, ..)| *r <= perfect) {
-                return;
+                return Ok(());
             }
             let bound = quick_star_bound(&filled.mesh, self.boundary).unwrap_or(1.0);
+            if let Some(split) = self.split(&filled, bound)? {
+                self.consider(split)?;
+            }
             if bound <= NO_ROOM && self.best.is_some() {
                 self.seen.push(format!("{} (star bound {bound:.3})", words(&filled)));
-                return;
+                return Ok(());
             }
             let mut one = *self.embed;
             one.starts = one.starts.max(1);
@@ -175,6 +179,24 @@ impl<'a> Trial<'a> {
         if self.best.as_ref().is_none_or(|(r, ..)| rank < *r) {
             self.best = Some((rank, filled, placed));
         }
+        Ok(())
+    }
+
+    /// The mesh with the stars split that leave (next to) no room; `None` if there are none, or none can be helped.
+    fn split(&self, filled: &Filled, bound: f64) -> Result<Option<Filled>, FillError> {
+        let mut options = SplitOptions::default();
+        // Pillows are candidates of their own.
+        options.layer = Layer::Never;
+        if bound >= options.below {
+            return Ok(None);
+        }
+        let Some(split) = split_stars(&filled.mesh, self.boundary, &options, self.ctx) else { return Ok(None) };
+        let after = quick_star_bound(&split.mesh, self.boundary).unwrap_or(1.0);
+        if split.splits.is_empty() || after <= bound {
+            return Ok(None);
+        }
+        verify(&self.problem.surface, &split.mesh, filled.route)?;
+        Ok(Some(Filled { mesh: split.mesh, ..filled.clone() }))
     }
 }
 

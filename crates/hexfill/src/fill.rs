@@ -444,7 +444,7 @@ fn accept(
 ///
 /// # Errors
 /// [`FillError::Refused`].
-fn verify(surface: &QuadSurface, mesh: &HexMesh, route: Route) -> Result<(), FillError> {
+pub(crate) fn verify(surface: &QuadSurface, mesh: &HexMesh, route: Route) -> Result<(), FillError> {
     let hexes = mesh.hexes_raw();
     let quads: Vec<[u32; 4]> = surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
     let judged = Judged::connectivity(mesh.n_vertices(), &hexes).with_surface(&quads);
