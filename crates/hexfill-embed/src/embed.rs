@@ -77,7 +77,7 @@ pub fn embed(
 pub fn tutte_start(mesh: &HexMesh, boundary_points: &[[f64; 3]]) -> Result<Vec<[f64; 3]>, EmbedError> {
     let normal = Normal::new(mesh, boundary_points, None)?;
     let mut points = normal.points.clone();
-    tutte::place(&normal.problem, &mut points, 0.0, &mut Random::new(0, 0));
+    tutte::place(&normal.problem, &mut points, 0.0, false, &mut Random::new(0, 0));
     Ok(normal.restore(&points))
 }
 
@@ -91,7 +91,7 @@ pub fn tutte_start(mesh: &HexMesh, boundary_points: &[[f64; 3]]) -> Result<Vec<[
 pub fn star_bounds(mesh: &HexMesh, boundary_points: &[[f64; 3]]) -> Result<Vec<StarBound>, EmbedError> {
     let normal = Normal::new(mesh, boundary_points, None)?;
     let mut points = normal.points.clone();
-    tutte::place(&normal.problem, &mut points, 0.0, &mut Random::new(0, 0));
+    tutte::place(&normal.problem, &mut points, 0.0, false, &mut Random::new(0, 0));
     let mut stars = star::bounds(&normal.problem, &normal.points);
     star::refine(&mut stars, &points, &Context::default());
     Ok(stars.into_iter().map(|s| s.bound).collect())
@@ -419,15 +419,21 @@ impl Search<'_> {
         let problem = &self.normal.problem;
         let mut points = self.normal.points.clone();
         match self.start {
-            Some(start) if number == 0 => points.copy_from_slice(start),
+            Some(start) if number == 0 => {
+                points.copy_from_slice(start);
+                if self.options.smooth_start {
+                    tutte::place(problem, &mut points, 0.0, true, &mut Random::new(0, 0));
+                }
+            }
             given => {
                 let plain = number == u32::from(given.is_some());
                 let mut random = Random::new(context.seed, u64::from(number));
-                tutte::place(problem, &mut points, if plain { 0.0 } else { 1.0 }, &mut random);
+                tutte::place(problem, &mut points, if plain { 0.0 } else { 1.0 }, false, &mut random);
             }
         }
         let n_hexes = problem.hexes.len();
-        let by_parts = n_hexes > self.options.local_limit || number == 0 && self.start.is_some();
+        let as_given = number == 0 && self.start.is_some() && !self.options.smooth_start;
+        let by_parts = n_hexes > self.options.local_limit || as_given;
         if problem.symmetry.is_some() {
             let x = problem.gather(&points);
             problem.scatter(&x, &mut points);
@@ -439,7 +445,7 @@ impl Search<'_> {
         } else {
             (bad, stopped) = local::untangle_whole(problem, &mut points, context);
         }
-        if let Some(given) = self.start.filter(|_| number == 0 && !bad.is_empty() && problem.symmetry.is_none()) {
+        if let Some(given) = self.start.filter(|_| as_given && !bad.is_empty() && problem.symmetry.is_none()) {
             // A start that could not be untangled comes back no worse than it was.
             let rank =
                 |points: &[Vector], bad: usize| (bad, -maxmin::judge_near_worst(problem, points, 0.0, 0.0).worst);

@@ -30,6 +30,8 @@ pub struct Options {
     /// Keep to positions with the symmetries of the boundary that are automorphisms of the mesh: fewer variables, a
     /// symmetric result. Without effect if there are none. The whole mesh is worked on at once, whatever the limits below.
     pub symmetric: bool,
+    /// Take a given start for a guess of the graph-Laplacian one: it is smoothed first.
+    pub smooth_start: bool,
     /// Worker threads; 0 uses the threads of the surrounding pool.
     pub threads: usize,
     /// Linear programs at most, a start.
@@ -46,6 +48,7 @@ impl Default for Options {
             objective: Objective::default(),
             starts: 0,
             symmetric: false,
+            smooth_start: false,
             threads: 0,
             programs: 150,
             whole_limit: 400,

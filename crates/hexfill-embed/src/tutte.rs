@@ -76,8 +76,8 @@ impl Laplacian {
     }
 }
 
-/// Places the free vertices of `points`. Variables that no path of edges joins to a fixed vertex stay where they are.
-pub(crate) fn place(problem: &Problem, points: &mut [Vector], spread: f64, random: &mut Random) {
+/// Places the free vertices of `points`; with `is_guess` they start from where they are. Variables that no path of edges joins to a fixed vertex stay where they are.
+pub(crate) fn place(problem: &Problem, points: &mut [Vector], spread: f64, is_guess: bool, random: &mut Random) {
     let laplacian = Laplacian::new(problem, spread, random);
     let n = problem.free.len();
     // The centre of the fixed points is a better first guess than the origin.
@@ -89,16 +89,18 @@ pub(crate) fn place(problem: &Problem, points: &mut [Vector], spread: f64, rando
             let row = laplacian.row(s).iter();
             row.filter(|(v, _)| problem.slot[*v as usize] as usize >= n).map(|&(v, w)| w * points[v as usize][k]).sum()
         });
-        let x = conjugate_gradients(problem, &laplacian, &right, centre);
+        let guess =
+            problem.free.iter().map(|&v| if is_guess { points[v as usize][k] } else { centre }).collect();
+        let x = conjugate_gradients(problem, &laplacian, &right, guess);
         for (s, &v) in problem.free.iter().enumerate() {
             points[v as usize][k] = x[s];
         }
     }
 }
 
-fn conjugate_gradients(problem: &Problem, laplacian: &Laplacian, right: &[f64], guess: f64) -> Vec<f64> {
+fn conjugate_gradients(problem: &Problem, laplacian: &Laplacian, right: &[f64], guess: Vec<f64>) -> Vec<f64> {
     let n = right.len();
-    let mut x = vec![guess; n];
+    let mut x = guess;
     let mut applied = vec![0.0; n];
     laplacian.apply(problem, &x, &mut applied);
     let mut residual: Vec<f64> = right.iter().zip(&applied).map(|(b, a)| b - a).collect();

@@ -5,6 +5,7 @@
 //! left -> `lens` the smallest lens of its dual -> `zip` flips that empty it -> `sweep` until nothing is left.
 
 mod angles;
+mod blend;
 mod close;
 mod compress;
 mod deviation;

@@ -4,6 +4,7 @@
 //! three sheets have multiplicities a, b, c is cut into a x b x c. Points on the surface are the fine surface's own, known
 //! from the compression, so nothing is left to be matched afterwards.
 
+use crate::blend::{blend_block, springs};
 use crate::compress::Coarse;
 use hexfill_mesh::cube::{EDGES, FACETS, POSITIONS};
 use rustc_hash::FxHashMap;
@@ -12,16 +13,41 @@ use rustc_hash::FxHashMap;
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) struct MultiplicityClash;
 
-/// The fine mesh: `n_fine` vertices of the surface first, then new ones.
-pub(crate) fn lift(coarse: &Coarse, n_fine: u32, hexes: &[[u32; 8]]) -> Result<(u32, Vec<[u32; 8]>), MultiplicityClash> {
+/// A fine mesh.
+pub(crate) struct Lifted {
+    /// Vertices of the surface first, then new ones.
+    pub n_vertices: u32,
+    pub hexes: Vec<[u32; 8]>,
+    /// A first guess at the positions of all vertices, if those of the surface are known.
+    pub points: Option<Vec<[f64; 3]>>,
+}
+
+/// Lifts the hexes of a coarse mesh of a surface with `n_fine` vertices at `points`.
+pub(crate) fn lift(
+    coarse: &Coarse,
+    n_fine: u32,
+    points: Option<&[[f64; 3]]>,
+    hexes: &[[u32; 8]],
+) -> Result<Lifted, MultiplicityClash> {
     let segments = segments(coarse, hexes)?;
     let mut lattice = Lattice::new(coarse, n_fine);
     let mut fine = Vec::new();
+    let mut guess = points.map(<[_]>::to_vec);
+    let at_fixed = |v: u32| points.and_then(|p| coarse.vertices.get(v as usize).map(|fine| p[fine.index()]));
+    let corners = points.map(|_| springs(hexes, &segments, &at_fixed));
     for hex in hexes {
         let sizes = AXES.map(|[i, j]| segments[&pair(hex[i], hex[j])]);
         let [a, b, c] = sizes.map(|s| s as usize);
-        let points = lattice.points_of(hex, sizes);
-        let at = |i: usize, j: usize, k: usize| points[(k * (b + 1) + j) * (a + 1) + i];
+        let ids = lattice.points_of(hex, sizes);
+        let at = |i: usize, j: usize, k: usize| ids[(k * (b + 1) + j) * (a + 1) + i];
+        if let (Some(guess), Some(corners)) = (&mut guess, &corners) {
+            guess.resize(lattice.n_vertices as usize, [f64::NAN; 3]);
+            for (p, v) in POSITIONS.iter().zip(hex) {
+                let id = at(p[0] as usize * a, p[1] as usize * b, p[2] as usize * c) as usize;
+                guess[id] = corners[v];
+            }
+            blend_block(&ids, sizes, guess);
+        }
         for k in 0..c {
             for j in 0..b {
                 for i in 0..a {
@@ -30,7 +56,7 @@ pub(crate) fn lift(coarse: &Coarse, n_fine: u32, hexes: &[[u32; 8]]) -> Result<(
             }
         }
     }
-    Ok((lattice.n_vertices, fine))
+    Ok(Lifted { n_vertices: lattice.n_vertices, hexes: fine, points: guess })
 }
 
 /// Edges from corner 0 along x, y and z.

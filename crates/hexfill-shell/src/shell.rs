@@ -39,6 +39,8 @@ impl Default for ShellOptions {
 pub struct Shelled {
     /// The mesh; the surface's vertices keep their ids, interior vertices follow.
     pub mesh: HexMesh,
+    /// A first guess at all positions, if those of the surface were given; the surface's own come first, bit for bit.
+    pub points: Option<Vec<[f64; 3]>>,
     /// How far its edges are from the hexes they want: 0 is perfect.
     pub cost: f32,
     /// Pillows under the surface.
@@ -97,21 +99,21 @@ pub fn shell(
     for &pillows in &options.pillows {
         let start = Start::new(&coarse, pillows);
         let mut meshes = start.complete(options, &mut shelling.left, ctx);
-        let found = keep(&mut shelling.meshes, &coarse, surface, pillows, std::mem::take(&mut meshes), options);
+        let found = keep(&mut shelling.meshes, &coarse, surface, points, pillows, std::mem::take(&mut meshes), options);
         if surface.n_quads() > MOST_FINE || ctx.stop().is_some() {
             continue;
         }
         if surface.genus() > 0
-            && let Some(points) = points
+            && let Some(given) = points
         {
             // Plugs join chords of all multiplicities, so they need the surface as it is.
-            if let Some(start) = Start::new(&fine, pillows).plugged(points, surface.genus()) {
+            if let Some(start) = Start::new(&fine, pillows).plugged(given, surface.genus()) {
                 let meshes = start.complete(options, &mut shelling.left, ctx);
-                keep(&mut shelling.meshes, &fine, surface, pillows, meshes, options);
+                keep(&mut shelling.meshes, &fine, surface, points, pillows, meshes, options);
             }
         } else if found == 0 && !is_fine {
             let meshes = Start::new(&fine, pillows).by_flips(options, &[], &mut shelling.left, ctx);
-            keep(&mut shelling.meshes, &fine, surface, pillows, meshes, options);
+            keep(&mut shelling.meshes, &fine, surface, points, pillows, meshes, options);
         }
     }
     shelling
@@ -219,6 +221,7 @@ fn keep(
     kept: &mut Vec<Shelled>,
     coarse: &Coarse,
     surface: &QuadSurface,
+    points: Option<&[[f64; 3]]>,
     pillows: u32,
     meshes: Vec<Hexes>,
     options: &ShellOptions,
@@ -240,9 +243,9 @@ fn keep(
     let chosen: Vec<usize> = (0..wanted).map(|i| if wanted == 1 { 0 } else { i * (n - 1) / (wanted - 1) }).collect();
     for i in chosen {
         let (d, hexes) = &measured[i];
-        let Ok((n, fine)) = lift(coarse, surface.n_vertices() as u32, hexes) else { continue };
-        let Ok(mesh) = HexMesh::try_new(n as usize, &fine) else { continue };
-        kept.push(Shelled { mesh, cost: d.cost, pillows });
+        let Ok(lifted) = lift(coarse, surface.n_vertices() as u32, points, hexes) else { continue };
+        let Ok(mesh) = HexMesh::try_new(lifted.n_vertices as usize, &lifted.hexes) else { continue };
+        kept.push(Shelled { mesh, points: lifted.points, cost: d.cost, pillows });
     }
     kept.len() - before
 }

@@ -169,6 +169,7 @@ impl<'a> Trial<'a> {
             let mut one = *self.embed;
             one.starts = one.starts.max(1);
             one.programs = one.programs.min(SCREENING);
+            one.smooth_start = true;
             place_as_it_is(&filled, self.boundary, Some(&one), &self.limited())
         } else {
             place(&mut filled, self.problem, self.boundary, Some(self.embed), &self.limited())
@@ -196,7 +197,7 @@ impl<'a> Trial<'a> {
             return Ok(None);
         }
         verify(&self.problem.surface, &split.mesh, filled.route)?;
-        Ok(Some(Filled { mesh: split.mesh, ..filled.clone() }))
+        Ok(Some(Filled { mesh: split.mesh, route: filled.route, start: None }))
     }
 }
 

@@ -130,7 +130,7 @@ pub struct Filled {
     pub mesh: HexMesh,
     /// How it was found.
     pub route: Route,
-    /// Start positions that come with a construction; absent for the other routes.
+    /// Start positions that come with a construction or a shelling; absent for the other routes.
     pub start: Option<Vec<[f64; 3]>>,
 }
 
@@ -253,7 +253,7 @@ pub(crate) fn fill_component(
     }
     if result.meshes.len() < options.count && by_shelling && ctx.stop().is_none() {
         for filled in shelled(problem, options, ctx, &mut result)? {
-            accept(surface, filled.mesh, filled.route, None, options, &mut result)?;
+            accept(surface, filled.mesh, filled.route, filled.start, options, &mut result)?;
         }
     }
     if small && result.meshes.is_empty() && options.strategy == Strategy::Auto && ctx.stop().is_none() {
@@ -284,7 +284,7 @@ pub(crate) fn shelled(
     for shelled in made.meshes {
         if shelled.mesh.n_hexes() as u64 <= u64::from(options.max_hexes) {
             verify(&problem.surface, &shelled.mesh, Route::Shelling)?;
-            meshes.push(Filled { mesh: shelled.mesh, route: Route::Shelling, start: None });
+            meshes.push(Filled { mesh: shelled.mesh, route: Route::Shelling, start: shelled.points });
         }
     }
     Ok(meshes)
