@@ -6,6 +6,7 @@
 
 mod angles;
 mod blend;
+mod boundary_layers;
 mod close;
 mod compress;
 mod deviation;
@@ -33,6 +34,7 @@ mod sweep_tests;
 #[cfg(test)]
 mod test_surfaces;
 
+pub use boundary_layers::{BoundaryLayers, cut_boundary_layers};
 pub use front::{Front, FrontError, Mark};
 pub use shell::{ShellOptions, Shelled, Shelling, shell};
 pub use split_star::{Layer, SplitOptions, SplitStars, SplitVertex, split_stars};

@@ -60,26 +60,23 @@ pub(crate) fn lift(
 }
 
 /// Edges from corner 0 along x, y and z.
-const AXES: [[usize; 2]; 3] = [[0, 1], [0, 3], [0, 4]];
+pub(crate) const AXES: [[usize; 2]; 3] = [[0, 1], [0, 3], [0, 4]];
 
 fn pair(a: u32, b: u32) -> [u32; 2] {
     if a < b { [a, b] } else { [b, a] }
 }
 
-/// Per edge of the coarse mesh (smaller vertex first): into how many it is cut.
-pub(crate) fn segments(coarse: &Coarse, hexes: &[[u32; 8]]) -> Result<FxHashMap<[u32; 2], u32>, MultiplicityClash> {
-    let mut ids: FxHashMap<[u32; 2], u32> = FxHashMap::default();
-    let mut edges = Vec::new();
-    for hex in hexes {
-        for [i, j] in EDGES {
-            let e = pair(hex[i], hex[j]);
-            ids.entry(e).or_insert_with(|| {
-                edges.push(e);
-                edges.len() as u32 - 1
-            });
-        }
-    }
-    let mut parent: Vec<u32> = (0..edges.len() as u32).collect();
+/// Classes of edges that are parallel across hexes: each is the edges one sheet crosses.
+pub(crate) struct ParallelClasses {
+    /// The class of each edge (smaller vertex first).
+    pub of: FxHashMap<[u32; 2], u32>,
+    pub n: usize,
+}
+
+/// The classes of a mesh, numbered by their first edge in the order of the hexes.
+pub(crate) fn parallel_classes(hexes: &[[u32; 8]]) -> ParallelClasses {
+    let mut of: FxHashMap<[u32; 2], u32> = FxHashMap::default();
+    let mut parent: Vec<u32> = Vec::new();
     fn root(parent: &mut [u32], mut i: u32) -> u32 {
         while parent[i as usize] != i {
             parent[i as usize] = parent[parent[i as usize] as usize];
@@ -88,40 +85,46 @@ pub(crate) fn segments(coarse: &Coarse, hexes: &[[u32; 8]]) -> Result<FxHashMap<
         i
     }
     for hex in hexes {
-        for axis in 0..3 {
+        // The edges come four to an axis.
+        for axis in EDGES.chunks(4) {
             let mut first = None;
-            for [i, j] in EDGES {
-                let moves = (0..3).find(|&k| POSITIONS[i][k] != POSITIONS[j][k]);
-                if moves != Some(axis) {
-                    continue;
-                }
-                let r = root(&mut parent, ids[&pair(hex[i], hex[j])]);
-                match first {
-                    None => first = Some(r),
-                    Some(f) => {
-                        let f = root(&mut parent, f);
-                        parent[r.max(f) as usize] = r.min(f);
-                    }
-                }
+            for &[i, j] in axis {
+                let id = *of.entry(pair(hex[i], hex[j])).or_insert_with(|| {
+                    parent.push(parent.len() as u32);
+                    parent.len() as u32 - 1
+                });
+                let r = root(&mut parent, id);
+                let f = root(&mut parent, *first.get_or_insert(r));
+                parent[r.max(f) as usize] = r.min(f);
             }
         }
     }
-    let mut of_root = vec![0u32; edges.len()];
+    let n = parent.len();
+    for class in of.values_mut() {
+        *class = root(&mut parent, *class);
+    }
+    ParallelClasses { of, n }
+}
+
+/// Per edge of the coarse mesh (smaller vertex first): into how many it is cut.
+pub(crate) fn segments(coarse: &Coarse, hexes: &[[u32; 8]]) -> Result<FxHashMap<[u32; 2], u32>, MultiplicityClash> {
+    let classes = parallel_classes(hexes);
+    let mut of_class = vec![0u32; classes.n];
     for d in coarse.surface.darts() {
         let e = pair(coarse.surface.origin(d).0, coarse.surface.target(d).0);
-        let Some(&id) = ids.get(&e) else { continue };
-        let slot = &mut of_root[root(&mut parent, id) as usize];
+        let Some(&class) = classes.of.get(&e) else { continue };
+        let slot = &mut of_class[class as usize];
         let length = coarse.length[d.index()];
         if *slot != 0 && *slot != length {
             return Err(MultiplicityClash);
         }
         *slot = length;
     }
-    Ok(edges.iter().map(|&e| (e, of_root[root(&mut parent, ids[&e]) as usize].max(1))).collect())
+    Ok(classes.of.into_iter().map(|(e, class)| (e, of_class[class as usize].max(1))).collect())
 }
 
 /// Ids of the fine points, as they are asked for.
-struct Lattice {
+pub(crate) struct Lattice {
     n_vertices: u32,
     /// Fine vertex of each coarse one; coarse vertices beyond the surface's get theirs on demand.
     corner: FxHashMap<u32, u32>,
@@ -165,7 +168,7 @@ impl Frame {
 }
 
 impl Lattice {
-    fn new(coarse: &Coarse, n_fine: u32) -> Self {
+    pub fn new(coarse: &Coarse, n_fine: u32) -> Self {
         let mut lattice = Self {
             n_vertices: n_fine,
             corner: coarse.vertices.iter().enumerate().map(|(v, fine)| (v as u32, fine.0)).collect(),
@@ -201,8 +204,18 @@ impl Lattice {
         lattice
     }
 
+    pub fn n_vertices(&self) -> u32 {
+        self.n_vertices
+    }
+
+    /// Point number `i` inside the edge from `v` to `w`, counted from `v`; the edge is one of a hex whose points were asked for.
+    pub fn point_on_edge(&self, v: u32, w: u32, i: usize) -> u32 {
+        let points = &self.edge[&pair(v, w)];
+        if v < w { points[i] } else { points[points.len() - 1 - i] }
+    }
+
     /// The points of a hex cut into `a x b x c`, x fastest.
-    fn points_of(&mut self, hex: &[u32; 8], [a, b, c]: [u32; 3]) -> Vec<u32> {
+    pub fn points_of(&mut self, hex: &[u32; 8], [a, b, c]: [u32; 3]) -> Vec<u32> {
         let sizes = [a, b, c];
         let mut points = vec![u32::MAX; (a as usize + 1) * (b as usize + 1) * (c as usize + 1)];
         let index = |p: [u32; 3]| ((p[2] * (b + 1) + p[1]) * (a + 1) + p[0]) as usize;

@@ -38,7 +38,7 @@ const NOISE: f32 = 1.0;
 /// What a fine hex costs besides, in turn: where creases do not decide, smaller sides go first.
 const PER_HEX: [f32; 4] = [0.0, 0.02, 0.1, 0.5];
 /// Sets of two rings are looked at only among so many rings.
-const MOST_PAIRED: usize = 160;
+const MOST_PAIRED: usize = 64;
 /// Edges that want fewer hexes than this bound the patches that may be a side.
 const CREASE: f32 = 1.5;
 

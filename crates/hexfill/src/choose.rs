@@ -5,13 +5,13 @@
 //! hexes for their quality ([`Prefer`]).
 
 use crate::fill::{FillError, FillOptions, Filled, Route, Strategy, construct, search, shelled, verify};
-use crate::geometry::{Placed, place, place_as_it_is};
+use crate::geometry::{Placed, place, place_as_it_is, place_points};
 use crate::placed_fill::{Next, PlaceOptions, PlacedFill, no_room};
 use crate::problem::Problem;
 use hexfill_embed::quick_star_bound;
 use hexfill_mesh::{Context, StopReason};
 use hexfill_search::MAX_QUADS;
-use hexfill_shell::{Layer, SplitOptions, split_stars};
+use hexfill_shell::{Layer, SplitOptions, cut_boundary_layers, split_stars};
 use serde::Serialize;
 
 /// The worst scaled Jacobian from which on a mesh is good enough to compute on.
@@ -111,15 +111,20 @@ pub(crate) fn fill_best(
         }
     }
     trial.polish();
+    let layered = trial.cut_layers()?;
     let Trial { best, seen, .. } = trial;
     let choice = match (why_none, seen.len()) {
         (Some(why), _) => Some(format!("no other mesh was tried, since none can be valid: {why}")),
         (None, 0 | 1) => None,
         (None, _) => best.as_ref().map(|(_, filled, _)| {
-            format!("{} by {}; tried: {}", filled.mesh.n_hexes(), filled.route.words(), seen.join(", "))
+            format!("{}, the best of {}", words(filled), seen.join(", "))
         }),
     };
     let stop = if result.stop == StopReason::Finished { ctx.stop().unwrap_or(result.stop) } else { result.stop };
+    let choice = match layered {
+        Some(layers) => Some(choice.map_or(layers.clone(), |c| format!("{c}; {layers}"))),
+        None => choice,
+    };
     let meshes = best.into_iter().map(|(_, filled, placed)| (filled, Some(placed))).collect();
     Ok(PlacedFill { meshes, stop, tried: result.tried, choice })
 }
@@ -152,6 +157,14 @@ impl<'a> Trial<'a> {
     /// Embeds a mesh and keeps it if it is the best.
     fn consider(&mut self, mut filled: Filled) -> Result<(), FillError> {
         let prefer = self.options.prefer;
+        if self.options.layers.is_some() && filled.route != Route::Shelling {
+            // Layers are cut out of a pillow, which shelling puts by itself.
+            let mut pillow = SplitOptions::default();
+            (pillow.below, pillow.layer) = (-1.0, Layer::Always);
+            let Some(pillowed) = split_stars(&filled.mesh, self.boundary, &pillow, self.ctx) else { return Ok(()) };
+            verify(&self.problem.surface, &pillowed.mesh, filled.route)?;
+            filled = Filled { mesh: pillowed.mesh, route: filled.route, start: None };
+        }
         let placed = if filled.route == Route::Shelling {
             // Its surface vertices lie where the surface's do, so there is one way to place it.
             let perfect = (0, within(filled.mesh.n_hexes(), 1.0, prefer));
@@ -218,6 +231,25 @@ impl Trial<'_> {
         if polished.is_certified() && polished.worst() > placed.worst() {
             *placed = polished;
         }
+    }
+}
+
+impl Trial<'_> {
+    /// Cuts the pillow of the best mesh into the layers asked for, and says so.
+    fn cut_layers(&mut self) -> Result<Option<String>, FillError> {
+        let (Some(layers), Some((_, filled, placed))) = (self.options.layers, &mut self.best) else { return Ok(None) };
+        let surface = &self.problem.surface;
+        let Some((mesh, points)) = cut_boundary_layers(&filled.mesh, surface, &placed.points, &layers) else {
+            return Err(FillError::NotForStrategy {
+                what: "no mesh with a layer of one hexahedron under every quad was found, so there is nothing to cut into boundary layers"
+                    .to_owned(),
+                remedy: "leave --layers out",
+            });
+        };
+        verify(surface, &mesh, filled.route)?;
+        *filled = Filled { mesh, route: filled.route, start: None };
+        *placed = place_points(filled, self.boundary, points, placed.embedding.take());
+        Ok(Some(format!("{} boundary layers", layers.count)))
     }
 }
 

@@ -15,7 +15,7 @@ use hexfill_search::{
     Atlas, AtlasError, Cavity, FillOptions as InwardOptions, GrowOptions, Growth, GrowthLog, MAX_CAP, MAX_QUADS,
     SimplifyOptions, fill_from_atlas,
 };
-use hexfill_shell::{ShellOptions, shell};
+use hexfill_shell::{BoundaryLayers, ShellOptions, shell};
 use serde::Serialize;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -83,6 +83,8 @@ pub struct FillOptions {
     pub shell: ShellOptions,
     /// What to prefer among certified meshes.
     pub prefer: Prefer,
+    /// Boundary layers under the whole surface, cut once the mesh has positions; `None`: none.
+    pub layers: Option<BoundaryLayers>,
 }
 
 impl Default for FillOptions {
@@ -102,6 +104,7 @@ impl Default for FillOptions {
             simplify: None,
             shell: ShellOptions::default(),
             prefer: Prefer::default(),
+            layers: None,
         }
     }
 }
@@ -278,7 +281,11 @@ pub(crate) fn shelled(
     result: &mut FillResult,
 ) -> Result<Vec<Filled>, FillError> {
     let points = boundary_points(problem);
-    let made = shell(&problem.surface, points.as_deref(), &options.shell, ctx);
+    let mut how = options.shell.clone();
+    if options.layers.is_some() {
+        how.pillows = vec![1];
+    }
+    let made = shell(&problem.surface, points.as_deref(), &how, ctx);
     result.tried.push(made.to_string());
     let mut meshes = Vec::new();
     for shelled in made.meshes {

@@ -143,6 +143,16 @@ pub(crate) fn place_as_it_is(
     place_from(filled, boundary, points, embedding, refused)
 }
 
+/// A filling at these positions, judged.
+pub(crate) fn place_points(
+    filled: &Filled,
+    boundary: &[[f64; 3]],
+    points: Vec<[f64; 3]>,
+    embedding: Option<EmbedReport>,
+) -> Placed {
+    place_from(filled, boundary, points, embedding, None)
+}
+
 /// [`positions`]; where there are none, interior vertices at a boundary vertex and the reason.
 fn positions_or_none(
     filled: &Filled,

@@ -8,7 +8,7 @@ use anyhow::bail;
 use hexfill::construct::{CellChoice, GivenTets, TetgenTets};
 use hexfill::io::Format;
 use hexfill::search::{Atlas, GrowOptions};
-use hexfill::{
+use hexfill::{BoundaryLayers, 
     Context, FillOptions, FillReport, Filled, GeometryReport, InteriorFrom, PlaceOptions, Placed, Problem, StopReason,
     Strategy,
 };
@@ -43,6 +43,15 @@ pub struct FillArgs {
     /// Which mesh to prefer among those that are certified with a worst scaled Jacobian of at least 0.2.
     #[arg(long, value_enum, default_value = "balance")]
     prefer: PreferArg,
+    /// Put this many layers of hexahedra under the whole surface (boundary layers for flow).
+    #[arg(long, value_name = "K", conflicts_with_all = ["count", "best_of", "no_embed", "improve"], value_parser = clap::value_parser!(u32).range(1..=1000))]
+    layers: Option<u32>,
+    /// Height of the first of them, in the unit of the surface [default: all layers of one place have the same height].
+    #[arg(long, value_name = "H", requires = "layers", value_parser = positive)]
+    layer_height: Option<f64>,
+    /// Each layer is this many times as high as the one before.
+    #[arg(long, value_name = "G", requires = "layer_height", default_value_t = 1.0, value_parser = positive)]
+    growth: f64,
     /// Accept only meshes of at most this many hexes.
     #[arg(long, value_name = "N")]
     max_hexes: Option<u32>,
@@ -203,6 +212,7 @@ pub fn run(args: &FillArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Res
             PreferArg::Hexes => hexfill::Prefer::Hexes,
             PreferArg::Quality => hexfill::Prefer::Quality,
         },
+        layers: args.layers.map(|count| BoundaryLayers { count, height: args.layer_height, growth: args.growth }),
         growth: GrowOptions { cap: args.cap, width: args.width.max(1) },
     };
     let mut how = PlaceOptions::default();
@@ -266,6 +276,14 @@ pub fn run(args: &FillArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Res
     }
     let enough = output.meshes.len() == args.count as usize;
     Ok(Exit::of_stop(result.stop, if all_valid && enough { Exit::Done } else { Exit::No }))
+}
+
+/// A positive number.
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(x) if x.is_finite() && x > 0.0 => Ok(x),
+        _ => Err(format!("{text} is not a positive number")),
+    }
 }
 
 /// Whether and how a construction is made smaller: as long as the deadline allows, or by a fixed number of balls. A smaller mesh
