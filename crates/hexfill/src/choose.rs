@@ -31,6 +31,11 @@ pub enum Prefer {
     Quality,
 }
 
+/// Surfaces of at most so many quads have many fillings in the atlas.
+const SMALLEST: usize = 24;
+/// Cavities inward flips may look at where shelling found nothing valid.
+const MOST_CAVITIES: u64 = 100_000;
+
 /// The place of a mesh in the order; smaller is better.
 type Rank = (u8, f64);
 
@@ -40,10 +45,7 @@ fn rank(filled: &Filled, placed: &Placed, prefer: Prefer) -> Rank {
         return (2, if placed.cells.is_empty() { f64::MAX } else { invalid as f64 });
     }
     let worst = placed.worst();
-    if worst < GOOD {
-        return (1, -worst);
-    }
-    (0, within(filled.mesh.n_hexes(), worst, prefer))
+    (u8::from(worst < GOOD), within(filled.mesh.n_hexes(), worst, prefer))
 }
 
 /// The order among good meshes.
@@ -90,13 +92,19 @@ pub(crate) fn fill_best(
     if options.strategy == Strategy::Auto && !trial.is_good() && ctx.stop().is_none() {
         why_none = no_room(surface, boundary);
         let has_valid = trial.class() == Some(1);
-        if small && why_none.is_none() && !has_valid {
-            search(surface, options, ctx, &mut result)?;
-            for filled in result.meshes.drain(..) {
-                trial.consider(filled)?;
+        if small && why_none.is_none() {
+            if !has_valid {
+                let cavities = options.inward_cavities.min(MOST_CAVITIES);
+                let inward = FillOptions { inward_cavities: cavities, ..options.clone() };
+                search(surface, &inward, ctx, &mut result)?;
+                for filled in result.meshes.drain(..) {
+                    trial.consider(filled)?;
+                }
             }
+            // The atlas knows many fillings of the smallest surfaces.
             let next = Next { problem, options, embed, boundary };
             if !trial.is_good()
+                && (!has_valid || surface.n_quads() <= SMALLEST)
                 && let Some((filled, _)) = next.more_fillings(&|| trial.limited(), ctx, &mut result.tried)?
             {
                 trial.consider(filled)?;
