@@ -45,6 +45,8 @@ pub struct Shelled {
     pub cost: f32,
     /// Pillows under the surface.
     pub pillows: u32,
+    /// Where its hexes come from, and how many.
+    pub stages: Vec<(&'static str, usize)>,
 }
 
 /// What shelling brought.
@@ -121,11 +123,23 @@ pub fn shell(
 
 type Hexes = Vec<[u32; 8]>;
 
+/// Coarse hexes in the order they were glued, and how many there were after each stage but the last.
+#[derive(Clone)]
+struct Glued {
+    hexes: Hexes,
+    after: [usize; STAGES.len() - 1],
+}
+
+/// Where hexes come from.
+const STAGES: [&str; 5] = ["pillows", "plugs", "layers", "flips", "residual"];
+
 /// Where sweeps start: the surface, perhaps behind pillows and cut by plugs.
 struct Start<'a> {
     coarse: &'a Coarse,
     void: Void,
     quads: Vec<[u32; 4]>,
+    /// Hexes of the pillows.
+    n_pillows: usize,
 }
 
 impl<'a> Start<'a> {
@@ -134,7 +148,8 @@ impl<'a> Start<'a> {
         for _ in 0..pillows {
             void.pillow();
         }
-        Self { coarse, void, quads: coarse.surface.quads().iter().map(|q| q.map(|v| v.0)).collect() }
+        let n_pillows = void.hexes.len();
+        Self { coarse, n_pillows, void, quads: coarse.surface.quads().iter().map(|q| q.map(|v| v.0)).collect() }
     }
 
     /// This start with all handles cut; `None` if one is not. `points` are those of the surface, which is not compressed.
@@ -156,16 +171,22 @@ impl<'a> Start<'a> {
     }
 
     /// Complete coarse meshes, by both engines.
-    fn complete(&self, options: &ShellOptions, left: &mut usize, ctx: &Context<'_>) -> Vec<Hexes> {
+    fn complete(&self, options: &ShellOptions, left: &mut usize, ctx: &Context<'_>) -> Vec<Glued> {
         let n = self.void.quads.len() as u64;
         let restarts = (RESTART_WORK / (n * n)).clamp(MIN_RESTARTS.min(options.restarts), options.restarts);
         let sweeps = solve(&self.void, restarts, ctx);
         let (complete, partial): (Vec<_>, Vec<_>) = sweeps.into_iter().partition(|s| s.is_complete());
-        let mut meshes: Vec<Hexes> = complete.into_iter().map(|s| s.void.hexes).collect();
+        let mut meshes: Vec<Glued> = complete
+            .into_iter()
+            .map(|s| {
+                let n = s.void.hexes.len();
+                self.glued(s.void.hexes, n, n)
+            })
+            .collect();
         if !meshes.is_empty() {
             *left = 0;
         }
-        let is_perfect = |h: &Hexes| deviation(self.coarse, h).is_some_and(|d| d.cost < 1e-3);
+        let is_perfect = |m: &Glued| deviation(self.coarse, &m.hexes).is_some_and(|d| d.cost < 1e-3);
         if meshes.iter().any(is_perfect) {
             return meshes;
         }
@@ -176,7 +197,7 @@ impl<'a> Start<'a> {
     }
 
     /// Complete coarse meshes by flips, from the start and from `others`.
-    fn by_flips(&self, options: &ShellOptions, others: &[Front], left: &mut usize, ctx: &Context<'_>) -> Vec<Hexes> {
+    fn by_flips(&self, options: &ShellOptions, others: &[Front], left: &mut usize, ctx: &Context<'_>) -> Vec<Glued> {
         let Some(front) = self.void.to_front(&self.quads) else { return Vec::new() };
         let Some(wanting) = self.void.to_wanting_front(&self.quads) else { return Vec::new() };
         // Every other sweep looks at lenses alone: it ends with fewer hexes.
@@ -184,36 +205,57 @@ impl<'a> Start<'a> {
             .map(|seed| (if seed % 2 == 0 { &wanting } else { &front }, seed / 2))
             .chain(others.iter().map(|f| (f, 0)))
             .collect();
-        let mut fronts: Vec<Front> = starts
+        // The fronts with the number of hexes that layers had glued, and that flips had.
+        let mut fronts: Vec<(usize, Front)> = starts
             .into_par_iter()
-            .map(|(front, seed)| {
+            .enumerate()
+            .map(|(i, (front, seed))| {
+                let by_layers = front.hexes().len();
                 let mut front = front.clone();
-                let quiet = Context { progress: None, ..*ctx };
-                sweep_front(&mut front, &SweepOptions { seed, ..SweepOptions::default() }, &quiet);
-                front
+                sweep_front(&mut front, &SweepOptions { seed, ..SweepOptions::default() }, &first_speaks(i, ctx));
+                (by_layers, front)
             })
             .collect();
-        fronts.sort_by_key(Front::n_quads);
-        let smallest = fronts.first().map_or(usize::MAX, Front::n_quads);
+        fronts.sort_by_key(|(_, front)| front.n_quads());
+        let smallest = fronts.first().map_or(usize::MAX, |(_, front)| front.n_quads());
         if smallest == 0 {
             *left = 0;
-            return fronts.into_iter().filter(|f| f.n_quads() == 0).map(|f| f.hexes().to_vec()).collect();
+            let complete = fronts.into_iter().filter(|(_, front)| front.n_quads() == 0);
+            return complete
+                .map(|(by_layers, front)| self.glued(front.hexes().to_vec(), by_layers, front.hexes().len()))
+                .collect();
         }
         // Nothing closed: the smallest residuals are filled.
         fronts.truncate(RESIDUALS);
-        let filled: Vec<Hexes> = fronts.par_iter().flat_map_iter(|front| close_residual(front, ctx)).collect();
+        let filled: Vec<Glued> = fronts
+            .par_iter()
+            .enumerate()
+            .flat_map_iter(|(i, (by_layers, front))| {
+                let filled = close_residual(front, &first_speaks(i, ctx));
+                filled.into_iter().map(|hexes| self.glued(hexes, *by_layers, front.hexes().len()))
+            })
+            .collect();
         *left = if filled.is_empty() { smallest.min(*left) } else { 0 };
         filled
     }
+
+    /// A complete mesh, given how many hexes there were after layers and after flips.
+    fn glued(&self, hexes: Hexes, after_layers: usize, after_flips: usize) -> Glued {
+        Glued { hexes, after: [self.n_pillows, self.void.hexes.len(), after_layers, after_flips] }
+    }
+}
+
+/// Of several that work at once only the first reports progress.
+fn first_speaks<'c>(number: usize, ctx: &Context<'c>) -> Context<'c> {
+    if number == 0 { *ctx } else { Context { progress: None, ..*ctx } }
 }
 
 /// A residual filled as it is, and stirred until it closes.
 fn close_residual(front: &Front, ctx: &Context<'_>) -> Vec<Hexes> {
-    let quiet = Context { progress: None, ..*ctx };
     let mut stirred = front.clone();
     let options = SweepOptions { atlas: Some(Atlas::embedded()), ..SweepOptions::default() };
-    stir_front(&mut stirred, STIRRING, &options, &quiet);
-    [fill_residual(front, &quiet), fill_residual(&stirred, &quiet)].into_iter().flatten().collect()
+    stir_front(&mut stirred, STIRRING, &options, ctx);
+    [fill_residual(front, ctx), fill_residual(&stirred, ctx)].into_iter().flatten().collect()
 }
 
 /// Lifts those that no other beats in both cost and hexes; returns how many.
@@ -223,12 +265,12 @@ fn keep(
     surface: &QuadSurface,
     points: Option<&[[f64; 3]]>,
     pillows: u32,
-    meshes: Vec<Hexes>,
+    meshes: Vec<Glued>,
     options: &ShellOptions,
 ) -> usize {
     let before = kept.len();
-    let mut measured: Vec<(Deviation, Hexes)> =
-        meshes.into_iter().filter_map(|h| deviation(coarse, &h).map(|d| (d, h))).collect();
+    let mut measured: Vec<(Deviation, Glued)> =
+        meshes.into_iter().filter_map(|m| deviation(coarse, &m.hexes).map(|d| (d, m))).collect();
     // Stable: first come, first served among equals.
     measured.sort_by(|a, b| a.0.cost.total_cmp(&b.0.cost).then(a.0.fine_hexes.cmp(&b.0.fine_hexes)));
     let mut fewest = u64::MAX;
@@ -242,10 +284,14 @@ fn keep(
     let wanted = n.min(options.candidates);
     let chosen: Vec<usize> = (0..wanted).map(|i| if wanted == 1 { 0 } else { i * (n - 1) / (wanted - 1) }).collect();
     for i in chosen {
-        let (d, hexes) = &measured[i];
-        let Ok(lifted) = lift(coarse, surface.n_vertices() as u32, points, hexes) else { continue };
+        let (d, glued) = &measured[i];
+        let Ok(lifted) = lift(coarse, surface.n_vertices() as u32, points, &glued.hexes) else { continue };
         let Ok(mesh) = HexMesh::try_new(lifted.n_vertices as usize, &lifted.hexes) else { continue };
-        kept.push(Shelled { mesh, points: lifted.points, cost: d.cost, pillows });
+        // Fine hexes before each stage and after the last.
+        let ends = [0].into_iter().chain(glued.after).chain([glued.hexes.len()]);
+        let fine: Vec<usize> = ends.map(|n| lifted.before[n]).collect();
+        let stages = STAGES.into_iter().zip(fine.windows(2).map(|w| w[1] - w[0])).filter(|(_, n)| *n > 0).collect();
+        kept.push(Shelled { mesh, points: lifted.points, cost: d.cost, pillows, stages });
     }
     kept.len() - before
 }

@@ -171,7 +171,7 @@ impl<'a> Trial<'a> {
             (pillow.below, pillow.layer) = (-1.0, Layer::Always);
             let Some(pillowed) = split_stars(&filled.mesh, self.boundary, &pillow, self.ctx) else { return Ok(()) };
             verify(&self.problem.surface, &pillowed.mesh, filled.route)?;
-            filled = Filled { mesh: pillowed.mesh, route: filled.route, start: None };
+            filled = filled.changed("pillow", pillowed.mesh);
         }
         let placed = if filled.route == Route::Shelling {
             // Its surface vertices lie where the surface's do, so there is one way to place it.
@@ -218,7 +218,7 @@ impl<'a> Trial<'a> {
             return Ok(None);
         }
         verify(&self.problem.surface, &split.mesh, filled.route)?;
-        Ok(Some(Filled { mesh: split.mesh, route: filled.route, start: None }))
+        Ok(Some(filled.changed("split stars", split.mesh)))
     }
 }
 
@@ -255,7 +255,7 @@ impl Trial<'_> {
             });
         };
         verify(surface, &mesh, filled.route)?;
-        *filled = Filled { mesh, route: filled.route, start: None };
+        *filled = filled.changed("boundary layers", mesh);
         *placed = place_points(filled, self.boundary, points, placed.embedding.take());
         Ok(Some(format!("{} boundary layers", layers.count)))
     }

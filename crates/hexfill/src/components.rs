@@ -83,7 +83,7 @@ pub(crate) fn fill_apart(problem: &Problem, options: &FillOptions, ctx: &Context
     }
     let mesh = HexMesh::try_new(n_vertices as usize, &hexes).expect("meshes without common vertices glue properly");
     if mesh.n_hexes() as u64 <= u64::from(options.max_hexes) {
-        result.meshes.push(Filled { mesh, route, start });
+        result.meshes.push(Filled { mesh, route, start, stages: Vec::new() });
     }
     Ok(result)
 }

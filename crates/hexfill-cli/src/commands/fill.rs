@@ -379,6 +379,10 @@ fn say(output: &Output, args: &FillArgs, console: &Console) {
             r.sheets.map_or(String::new(), |n| format!(", {n} sheets")),
             r.route.words(),
         ));
+        if r.stages.len() > 1 {
+            let stages: Vec<String> = r.stages.iter().map(|(stage, n)| format!("{n} {stage}")).collect();
+            console.say(format!("hexes by step: {}", stages.join(", ")));
+        }
         console.say("connectivity: judged proper, boundary = surface (L1-L3)");
         match &mesh.geometry {
             Some(geometry) => {
