@@ -74,7 +74,8 @@ fn sheets_with_a_boundary_stay() {
 #[test]
 fn pillowed_fillings_lose_their_pillows() {
     for surface in [6, 8, 10, 12].into_iter().flat_map(all_spheres) {
-        let filled = fill_from_atlas(&surface, Atlas::embedded(), &FillOptions::default(), &Context::default()).unwrap();
+        let filled =
+            fill_from_atlas(&surface, Atlas::embedded(), &FillOptions::default(), &Context::default()).unwrap();
         let small = &filled.fillings[0].mesh;
         let made = run(&pillowed(small, |_| true));
         assert!(made.mesh.n_hexes() <= small.n_hexes());

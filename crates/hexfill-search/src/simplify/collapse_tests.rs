@@ -117,7 +117,8 @@ fn the_judge_agrees_with_every_answer() {
     let mut starts = vec![grid(2, 2, 2).unwrap(), grid(3, 2, 1).unwrap(), grid(3, 3, 3).unwrap()];
     let surfaces = [8, 10, 12].into_iter().flat_map(all_spheres).chain([schneiders_pyramid(), octagonal_spindle()]);
     for surface in surfaces {
-        let filled = fill_from_atlas(&surface, Atlas::embedded(), &FillOptions::default(), &Context::default()).unwrap();
+        let filled =
+            fill_from_atlas(&surface, Atlas::embedded(), &FillOptions::default(), &Context::default()).unwrap();
         starts.extend(filled.fillings.into_iter().take(1).map(|f| f.mesh));
     }
     for start in starts {

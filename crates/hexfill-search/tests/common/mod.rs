@@ -59,4 +59,3 @@ pub fn pillowed(mesh: &HexMesh, inside: impl Fn(usize) -> bool) -> HexMesh {
     let compact: Vec<[u32; 8]> = hexes.iter().map(|h| h.map(|v| names.binary_search(&v).unwrap() as u32)).collect();
     HexMesh::try_new(names.len(), &compact).unwrap()
 }
-
