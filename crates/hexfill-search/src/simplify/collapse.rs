@@ -11,26 +11,29 @@ use hexfill_mesh::{Context, HexMesh};
 ///
 /// Time: near linear in the hexes, some microseconds each.
 pub fn collapse(mesh: &HexMesh, ctx: &Context<'_>) -> Simplified {
-    let mut made = Simplified::unchanged(mesh);
+    let mut live = LiveMesh::new(mesh);
+    let mut report = SimplifyReport::new(mesh.n_hexes());
+    collapse_live(&mut live, &mesh.boundary_vertices(), &mut report, ctx);
+    report.stop = ctx.stop().unwrap_or(report.stop);
+    report.after = live.n_hexes();
+    if report.collapsed == 0 {
+        return Simplified { report, ..Simplified::unchanged(mesh) };
+    }
+    let (mesh, origin) = Snapshot::of(&live).settled(mesh);
+    Simplified { mesh, origin, report }
+}
+
+/// [`collapse`] in place. `is_boundary`: of the vertices of the input; those that came later are inside.
+pub(crate) fn collapse_live(live: &mut LiveMesh, is_boundary: &[bool], report: &mut SimplifyReport, ctx: &Context<'_>) {
+    let before = live.n_hexes();
     loop {
-        let mut live = LiveMesh::new(&made.mesh);
-        let is_boundary = made.mesh.boundary_vertices();
-        let mut report = SimplifyReport::new(made.mesh.n_hexes());
-        report.sheets = collapse_sheets(&mut live, &made.mesh, &is_boundary, ctx);
-        report.columns = collapse_columns(&mut live, &is_boundary, ctx);
-        report.after = live.n_hexes();
-        report.collapsed = report.before - report.after;
-        report.stop = ctx.stop().unwrap_or(report.stop);
+        report.sheets += collapse_sheets(live, is_boundary, ctx);
+        let columns = collapse_columns(live, is_boundary, ctx);
+        report.columns += columns;
         // Columns that go change the sheets.
-        let is_last = report.columns == 0 || ctx.stop().is_some();
-        if report.collapsed > 0 {
-            let (mesh, origin) = Snapshot::of(&live).settled(&made.mesh);
-            made = made.then(Simplified { mesh, origin, report });
-        } else {
-            made.report.stop = report.stop;
-        }
-        if is_last {
-            return made;
+        if columns == 0 || ctx.stop().is_some() {
+            break;
         }
     }
+    report.collapsed += before - live.n_hexes();
 }

@@ -25,6 +25,7 @@ use crate::atlas::Atlas;
 use crate::cavity::MAX_QUADS;
 use crate::grow::{GrowOptions, Growth};
 pub use collapse::collapse;
+use collapse::collapse_live;
 use hexfill_mesh::{Context, HexMesh, StopReason, VertexId};
 use live::{LiveMesh, NONE};
 use offer::{Offer, Random, Search, Worker};
@@ -191,20 +192,29 @@ pub fn simplify(mesh: &HexMesh, atlas: &Atlas, options: &SimplifyOptions, ctx: &
     made
 }
 
-/// The balls of [`simplify`].
+/// Thousandths of the work between two collapses.
+const COLLAPSE_EVERY: u64 = 50;
+
+/// The balls of [`simplify`], with collapses between them.
 fn exchange_balls(mesh: &HexMesh, atlas: &Atlas, options: &SimplifyOptions, ctx: &Context<'_>) -> Simplified {
     let mut live = LiveMesh::new(mesh);
     let mut report = SimplifyReport::new(mesh.n_hexes());
     let mut workers: Vec<Worker<'_>> = (0..rayon::current_num_threads()).map(|_| Worker::new(atlas)).collect();
     let clock = Clock { balls: options.balls, started: Instant::now(), deadline: ctx.deadline };
     let mut best = Snapshot::of(&live);
+    let (is_boundary, mut collapsed_at) = (mesh.boundary_vertices(), 0);
     while report.balls < options.balls && live.n_hexes() > 1 {
         if let Some(stop) = ctx.stop() {
             report.stop = stop;
             break;
         }
         let size = (live.n_hexes() as u64 / 16).clamp(4, 1024).min(options.balls - report.balls);
-        let search = search_of(options, clock.done(report.balls));
+        let done = clock.done(report.balls);
+        if options.collapse && done / COLLAPSE_EVERY > collapsed_at {
+            collapsed_at = done / COLLAPSE_EVERY;
+            collapse_live(&mut live, &is_boundary, &mut report, ctx);
+        }
+        let search = search_of(options, done);
         let seen = live.exchanges();
         for offer in offers(&live, &mut workers, report.balls, size, &search, ctx) {
             if live.are_untouched_since(&offer.removed, seen) && still_fits(&live, &offer, seen) {

@@ -13,14 +13,10 @@ use crate::simplify::quotient::{Quotient, edge};
 use hexfill_mesh::cube::{EDGES, FACETS};
 use hexfill_mesh::{Context, HexMesh, sheets};
 
-/// Collapses closed sheets, those with most hexes first, until none can go; returns how many went. `live` is `mesh` unchanged.
+/// Collapses closed sheets, those with most hexes first, until none can go; returns how many went.
 /// Time: a pass over the sheets costs as much as sorting the hexes at their vertices.
-pub(crate) fn collapse_sheets(live: &mut LiveMesh, mesh: &HexMesh, is_boundary: &[bool], ctx: &Context<'_>) -> u64 {
-    let mut closed: Vec<Vec<(u32, u8)>> = sheets(mesh)
-        .into_iter()
-        .filter(|s| s.boundary.is_empty() && s.self_crossings.is_empty())
-        .map(|s| s.crossings.into_iter().map(|(h, direction)| (h.0, direction)).collect())
-        .collect();
+pub(crate) fn collapse_sheets(live: &mut LiveMesh, is_boundary: &[bool], ctx: &Context<'_>) -> u64 {
+    let mut closed = closed_sheets(live);
     let mut gone = 0;
     loop {
         // Stable: sheets with as many hexes in the order of their first ones.
@@ -46,6 +42,18 @@ pub(crate) fn collapse_sheets(live: &mut LiveMesh, mesh: &HexMesh, is_boundary: 
             return gone;
         }
     }
+}
+
+/// The closed sheets that do not cross themselves, by their hexes and the direction each is cut across.
+fn closed_sheets(live: &LiveMesh) -> Vec<Vec<(u32, u8)>> {
+    let slots: Vec<u32> = live.alive().collect();
+    let hexes: Vec<[u32; 8]> = slots.iter().map(|&h| *live.hex(h)).collect();
+    let mesh = HexMesh::try_new(live.n_vertex_slots(), &hexes).expect("facets stay glued in pairs");
+    sheets(&mesh)
+        .into_iter()
+        .filter(|s| s.boundary.is_empty() && s.self_crossings.is_empty())
+        .map(|s| s.crossings.into_iter().map(|(h, direction)| (slots[h.index()], direction)).collect())
+        .collect()
 }
 
 /// What the collapse of a sheet does. `sheet`: all its hexes with the direction it cuts across, no hex twice.
