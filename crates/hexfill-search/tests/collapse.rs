@@ -4,14 +4,15 @@ mod common;
 
 use common::{assert_sound, pillowed};
 use hexfill_mesh::generate::{Random, all_spheres, grid, grid_mesh_of, shuffled_mesh};
-use hexfill_mesh::{Context, HexMesh, StopReason, hex_signature};
+use hexfill_mesh::{Context, HexMesh, StopReason, VertexId, hex_signature};
 use hexfill_search::{
-    Atlas, FillOptions, Simplified, SimplifyOptions, collapse, fill_from_atlas, simplification_atlas, simplify,
+    Atlas, Collapse, FillOptions, Simplified, SimplifyOptions, collapse, fill_from_atlas, simplification_atlas,
+    simplify,
 };
 use std::sync::atomic::AtomicBool;
 
 fn run(mesh: &HexMesh) -> Simplified {
-    let made = collapse(mesh, &Context::default());
+    let made = collapse(mesh, Collapse::All, &Context::default());
     assert_sound(mesh, &made);
     made
 }
@@ -62,13 +63,30 @@ fn pillows_in_pillows_go_too() {
 }
 
 #[test]
+fn inside_only_keeps_every_hex_at_the_boundary() {
+    let mesh = grid(5, 4, 4).unwrap();
+    let inside = |h: usize| h == 1 + 5 * (1 + 4);
+    let [outer, inner] = [pillowed(&mesh, |_| true), pillowed(&pillowed(&mesh, inside), |_| true)];
+    for (big, after) in [(&outer, outer.n_hexes()), (&inner, outer.n_hexes())] {
+        let made = collapse(big, Collapse::Inside, &Context::default());
+        assert_sound(big, &made);
+        assert_eq!(made.mesh.n_hexes(), after);
+        let is_boundary = big.boundary_vertices();
+        let left: Vec<[Option<VertexId>; 8]> =
+            made.mesh.hexes().iter().map(|h| h.map(|v| made.origin[v.index()])).collect();
+        let at_boundary = big.hexes().iter().filter(|h| h.iter().any(|v| is_boundary[v.index()]));
+        assert!(at_boundary.into_iter().all(|h| left.contains(&h.map(Some))));
+    }
+}
+
+#[test]
 fn sheets_with_a_boundary_stay() {
     for mesh in [grid(4, 3, 2).unwrap(), grid_mesh_of([3, 3, 1], |[x, y, _]| x != 1 || y != 1).unwrap()] {
         let made = run(&mesh);
         assert_eq!((made.mesh, made.report.sheets, made.report.columns), (mesh, 0, 0));
     }
     let none = HexMesh::try_new(3, &[]).unwrap();
-    assert_eq!(collapse(&none, &Context::default()).mesh, none);
+    assert_eq!(collapse(&none, Collapse::All, &Context::default()).mesh, none);
 }
 
 #[test]
@@ -104,7 +122,7 @@ fn simplify_collapses_before_balls_unless_told_not_to() {
     let made = with(SimplifyOptions::default().with_balls(0));
     assert_eq!((made.report.sheets, made.report.collapsed, made.mesh.n_hexes()), (1, 54, 27));
     assert_eq!(made.report.balls, 0);
-    let made = with(SimplifyOptions::default().with_balls(0).with_collapse(false));
+    let made = with(SimplifyOptions::default().with_balls(0).with_collapse(Collapse::Nothing));
     assert_eq!((made.report.sheets, &made.mesh), (0, &mesh));
 }
 
@@ -112,7 +130,7 @@ fn simplify_collapses_before_balls_unless_told_not_to() {
 fn stopped_work_leaves_a_sound_mesh() {
     let mesh = pillowed(&grid(3, 3, 3).unwrap(), |_| true);
     let cancel = AtomicBool::new(true);
-    let made = collapse(&mesh, &Context { cancel: Some(&cancel), ..Context::default() });
+    let made = collapse(&mesh, Collapse::All, &Context { cancel: Some(&cancel), ..Context::default() });
     assert_sound(&mesh, &made);
     assert_eq!(made.report.stop, StopReason::Cancelled);
 }

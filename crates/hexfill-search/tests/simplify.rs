@@ -7,13 +7,18 @@ use hexfill_mesh::cube::FACETS;
 use hexfill_mesh::generate::{all_spheres, grid, grid_mesh_of, shuffled_mesh};
 use hexfill_mesh::{Context, HexMesh, StopReason, VertexId};
 use hexfill_search::{
-    Atlas, Cavity, FillOptions, Simplified, SimplifyOptions, fill_from_atlas, simplification_atlas, simplify,
+    Atlas, Cavity, Collapse, FillOptions, Simplified, SimplifyOptions, fill_from_atlas, simplification_atlas, simplify,
 };
 use std::sync::atomic::AtomicBool;
 
 fn run(mesh: &HexMesh, balls: u64, seed: u64) -> Simplified {
     let ctx = Context { seed, ..Context::default() };
-    simplify(mesh, simplification_atlas(), &SimplifyOptions::default().with_balls(balls).with_collapse(false), &ctx)
+    simplify(
+        mesh,
+        simplification_atlas(),
+        &SimplifyOptions::default().with_balls(balls).with_collapse(Collapse::Nothing),
+        &ctx,
+    )
 }
 
 #[test]

@@ -94,8 +94,8 @@ pub fn simplify(
 
 /// The mesh made smaller. An atlas is grown only if there are balls to look up.
 fn simplified(mesh: &HexMesh, options: &SimplifyOptions, atlas: Option<&Atlas>, ctx: &Context<'_>) -> Simplified {
-    if options.balls == 0 && options.collapse {
-        return collapse(mesh, ctx);
+    if options.balls == 0 {
+        return collapse(mesh, options.collapse, ctx);
     }
     simplify_mesh(mesh, atlas.unwrap_or_else(|| simplification_atlas()), options, ctx)
 }

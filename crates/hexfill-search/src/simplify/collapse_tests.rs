@@ -6,7 +6,7 @@ use crate::inward::{FillOptions, fill_from_atlas};
 use crate::simplify::Snapshot;
 use crate::simplify::column_collapse::{closed_columns, column_quotient, walk};
 use crate::simplify::live::LiveMesh;
-use crate::simplify::quotient::{Quotient, Refusal};
+use crate::simplify::quotient::{Kept, Quotient, Refusal};
 use crate::simplify::region::Region;
 use crate::simplify::sheet_collapse::sheet_quotient;
 use hexfill_check::{Ball, Judged, Level, Options, judge};
@@ -84,7 +84,7 @@ fn try_all(mesh: &HexMesh, seen: &mut BTreeMap<(&'static str, Option<Refusal>), 
         all.extend([0, 1].map(|diagonal| ("column", column_quotient(&live, &column, diagonal).unwrap())));
     }
     for (kind, quotient) in all {
-        let merges = quotient.merges(&live, &is_boundary);
+        let merges = quotient.merges(&live, &Kept { is_boundary: &is_boundary, hexes: false });
         *seen.entry((kind, merges.as_ref().err().copied())).or_default() += 1;
         let Ok(merges) = merges else {
             let hexes = forced(mesh, &quotient);

@@ -9,7 +9,7 @@
 //! comes back without a quarter turn. The two sheets that cross along the column are cut there and joined otherwise.
 
 use crate::simplify::live::{LiveMesh, NONE};
-use crate::simplify::quotient::{Quotient, edge};
+use crate::simplify::quotient::{Kept, Quotient, edge};
 use hexfill_mesh::Context;
 use hexfill_mesh::cube::{EDGES, FACETS};
 
@@ -23,7 +23,7 @@ pub(crate) struct Passed {
 
 /// Collapses closed columns, the longest first, until none can go; returns how many went.
 /// Time: a pass costs as much as sorting the hexes at the vertices of closed columns.
-pub(crate) fn collapse_columns(live: &mut LiveMesh, is_boundary: &[bool], ctx: &Context<'_>) -> u64 {
+pub(crate) fn collapse_columns(live: &mut LiveMesh, kept: &Kept<'_>, ctx: &Context<'_>) -> u64 {
     let mut gone = 0;
     loop {
         let before = gone;
@@ -35,7 +35,7 @@ pub(crate) fn collapse_columns(live: &mut LiveMesh, is_boundary: &[bool], ctx: &
             let Some(column) = live.is_alive(hex).then(|| walk(live, hex, direction)).flatten() else { continue };
             for diagonal in [0, 1] {
                 let Some(quotient) = column_quotient(live, &column, diagonal) else { continue };
-                if let Ok(merges) = quotient.merges(live, is_boundary) {
+                if let Ok(merges) = quotient.merges(live, kept) {
                     live.merge(&quotient.removed, &quotient.facets, &merges);
                     gone += 1;
                     break;

@@ -24,8 +24,8 @@ mod sheet_collapse;
 use crate::atlas::Atlas;
 use crate::cavity::MAX_QUADS;
 use crate::grow::{GrowOptions, Growth};
-pub use collapse::collapse;
 use collapse::collapse_live;
+pub use collapse::{Collapse, collapse};
 use hexfill_mesh::{Context, HexMesh, StopReason, VertexId};
 use live::{LiveMesh, NONE};
 use offer::{Offer, Random, Search, Worker};
@@ -48,13 +48,13 @@ pub struct SimplifyOptions {
     /// The chance, in thousandths, that a filling may have one more hex than the ball (then of another one, and so on) when the
     /// work begins. 0: never more hexes, only fewer or as many.
     pub heat: u32,
-    /// Whether closed sheets and columns are [collapsed](collapse()) before and after.
-    pub collapse: bool,
+    /// Which closed sheets and columns are [collapsed](collapse()), before the balls, between and after them.
+    pub collapse: Collapse,
 }
 
 impl Default for SimplifyOptions {
     fn default() -> Self {
-        Self { balls: 100_000, max_quads: 24, max_hexes: 100, heat: 970, collapse: true }
+        Self { balls: 100_000, max_quads: 24, max_hexes: 100, heat: 970, collapse: Collapse::All }
     }
 }
 
@@ -73,9 +73,9 @@ impl SimplifyOptions {
         self
     }
 
-    /// The options with or without collapses.
+    /// The options with other collapses.
     #[must_use]
-    pub fn with_collapse(mut self, collapse: bool) -> Self {
+    pub fn with_collapse(mut self, collapse: Collapse) -> Self {
         self.collapse = collapse;
         self
     }
@@ -176,16 +176,16 @@ impl Simplified {
 /// Time: some tens of microseconds per boundary looked up, whatever the size of the mesh. Memory: about 250 bytes a hex and
 /// some 20 bytes a hex for each thread.
 pub fn simplify(mesh: &HexMesh, atlas: &Atlas, options: &SimplifyOptions, ctx: &Context<'_>) -> Simplified {
-    if !options.collapse {
+    if options.collapse == Collapse::Nothing {
         return exchange_balls(mesh, atlas, options, ctx);
     }
-    let made = collapse(mesh, ctx);
+    let made = collapse(mesh, options.collapse, ctx);
     let exchanged = exchange_balls(&made.mesh, atlas, options, ctx);
     let (stop, is_other) = (exchanged.report.stop, exchanged.report.after < made.report.after);
     let mut made = made.then(exchanged);
     if is_other {
         // No clock: it takes little time, and the rest may have used up all of it.
-        let last = collapse(&made.mesh, &Context { deadline: None, ..*ctx });
+        let last = collapse(&made.mesh, options.collapse, &Context { deadline: None, ..*ctx });
         made = made.then(last);
         made.report.stop = stop;
     }
@@ -210,9 +210,9 @@ fn exchange_balls(mesh: &HexMesh, atlas: &Atlas, options: &SimplifyOptions, ctx:
         }
         let size = (live.n_hexes() as u64 / 16).clamp(4, 1024).min(options.balls - report.balls);
         let done = clock.done(report.balls);
-        if options.collapse && done / COLLAPSE_EVERY > collapsed_at {
+        if done / COLLAPSE_EVERY > collapsed_at {
             collapsed_at = done / COLLAPSE_EVERY;
-            collapse_live(&mut live, &is_boundary, &mut report, ctx);
+            collapse_live(&mut live, &is_boundary, options.collapse, &mut report, ctx);
         }
         let search = search_of(options, done);
         let seen = live.exchanges();

@@ -32,12 +32,20 @@ pub(crate) struct Quotient {
 /// Why a collapse is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Refusal {
-    /// It would merge two boundary vertices.
+    /// It would merge two boundary vertices, or take a hex at the boundary that must stay.
     Boundary,
     /// Cells would merge round a cycle, or a hex that stays would lose a corner.
     Cycle,
     /// Two hexes would meet improperly.
     Improper,
+}
+
+/// What a collapse must keep of the boundary.
+pub(crate) struct Kept<'a> {
+    /// Per vertex whether it is on the boundary; the vertices after the last are not.
+    pub is_boundary: &'a [bool],
+    /// Whether all hexes that have a boundary vertex must stay too.
+    pub hexes: bool,
 }
 
 /// An edge by its ends.
@@ -50,8 +58,11 @@ impl Quotient {
     ///
     /// # Errors
     /// Why the collapse is not allowed.
-    pub(crate) fn merges(&self, mesh: &LiveMesh, is_boundary: &[bool]) -> Result<Vec<[u32; 2]>, Refusal> {
-        let on_boundary = |v: u32| is_boundary.get(v as usize).is_some_and(|b| *b);
+    pub(crate) fn merges(&self, mesh: &LiveMesh, kept: &Kept<'_>) -> Result<Vec<[u32; 2]>, Refusal> {
+        let on_boundary = |v: u32| kept.is_boundary.get(v as usize).is_some_and(|b| *b);
+        if kept.hexes && self.removed.iter().any(|&h| mesh.hex(h).iter().any(|&v| on_boundary(v))) {
+            return Err(Refusal::Boundary);
+        }
         if self.vertices.iter().any(|pair| pair.iter().all(|&v| on_boundary(v))) {
             return Err(Refusal::Boundary);
         }

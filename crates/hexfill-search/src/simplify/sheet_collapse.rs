@@ -9,13 +9,13 @@
 //! Collapsing one sheet leaves the others what they are, less the hexes that both pass.
 
 use crate::simplify::live::LiveMesh;
-use crate::simplify::quotient::{Quotient, edge};
+use crate::simplify::quotient::{Kept, Quotient, edge};
 use hexfill_mesh::cube::{EDGES, FACETS};
 use hexfill_mesh::{Context, HexMesh, sheets};
 
 /// Collapses closed sheets, those with most hexes first, until none can go; returns how many went.
 /// Time: a pass over the sheets costs as much as sorting the hexes at their vertices.
-pub(crate) fn collapse_sheets(live: &mut LiveMesh, is_boundary: &[bool], ctx: &Context<'_>) -> u64 {
+pub(crate) fn collapse_sheets(live: &mut LiveMesh, kept: &Kept<'_>, ctx: &Context<'_>) -> u64 {
     let mut closed = closed_sheets(live);
     let mut gone = 0;
     loop {
@@ -31,7 +31,7 @@ pub(crate) fn collapse_sheets(live: &mut LiveMesh, is_boundary: &[bool], ctx: &C
                 continue;
             }
             let quotient = sheet_quotient(live, sheet);
-            if let Ok(merges) = quotient.merges(live, is_boundary) {
+            if let Ok(merges) = quotient.merges(live, kept) {
                 live.merge(&quotient.removed, &quotient.facets, &merges);
                 sheet.clear();
                 gone += 1;
