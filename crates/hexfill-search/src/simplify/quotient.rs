@@ -12,9 +12,10 @@
 //! the hexes at merged vertices are all that is looked at.
 
 use crate::simplify::live::{LiveMesh, NONE};
-use hexfill_mesh::cube::{BODY_DIAGONALS, EDGES, FACET_DIAGONALS};
+use hexfill_mesh::cube::{EDGES, FACET_DIAGONALS};
 use rustc_hash::FxHashMap;
 use std::hash::Hash;
+use std::sync::LazyLock;
 
 /// What a collapse does to a mesh. The links are those of the fibres, each given once.
 #[derive(Default)]
@@ -83,49 +84,68 @@ impl Quotient {
         let becomes: FxHashMap<u32, u32> =
             touched.iter().map(|&v| (v, *target.entry(vertices.root(v)).or_insert(v))).collect();
 
-        let mut hexes: Vec<u32> = touched.iter().flat_map(|&v| mesh.hexes_at(v)).collect();
-        hexes.sort_unstable();
-        hexes.dedup();
         let mut removed = self.removed.clone();
         removed.sort_unstable();
-        hexes.retain(|h| removed.binary_search(h).is_err());
-        // (pair, cell): each pair with one of the merged vertices, and the cell that joins it.
-        let mut joined: Vec<([u32; 2], [u32; 3])> = Vec::with_capacity(16 * hexes.len());
-        for &h in &hexes {
-            let old = mesh.hex(h);
-            let new = old.map(|v| becomes.get(&v).copied().unwrap_or(v));
-            let is_merged = old.map(|v| becomes.contains_key(&v));
-            if (1..8).any(|i| new[..i].contains(&new[i])) {
-                return Err(Refusal::Cycle);
-            }
-            let mut add = |i: usize, j: usize, cell: &mut dyn FnMut() -> [u32; 3]| {
-                if is_merged[i] || is_merged[j] {
-                    joined.push((edge(new[i], new[j]), cell()));
+        // The vertices that become one, those with few hexes first: what is refused is mostly refused there.
+        let mut classes: Vec<(u32, u32)> = touched.iter().map(|&v| (becomes[&v], v)).collect();
+        classes.sort_unstable();
+        let mut classes: Vec<&[(u32, u32)]> = classes.chunk_by(|x, y| x.0 == y.0).collect();
+        classes.sort_by_key(|class| class.iter().map(|&(_, v)| mesh.degree(v)).sum::<u32>());
+        // (other vertex, cell): what joins the merged vertex to others.
+        let mut joined: Vec<(u32, [u32; 3])> = Vec::new();
+        for class in classes {
+            joined.clear();
+            let target = class[0].0;
+            for &(_, v) in class {
+                for h in mesh.hexes_at(v).filter(|h| removed.binary_search(h).is_err()) {
+                    let old = mesh.hex(h);
+                    let Some(i) = old.iter().position(|&w| w == v) else { continue };
+                    for (j, &w) in old.iter().enumerate().filter(|&(j, _)| j != i) {
+                        let other = becomes.get(&w).copied().unwrap_or(w);
+                        if other == target {
+                            return Err(Refusal::Cycle);
+                        }
+                        let cell = match JOINS[i][j] {
+                            Join::Edge => {
+                                let [a, b] = edges.root(edge(v, w));
+                                [0, a, b]
+                            }
+                            Join::Diagonal(side) => [1, quads.root(name(6 * h + side)), NONE],
+                            Join::Body => [2, h, NONE],
+                        };
+                        joined.push((other, cell));
+                    }
                 }
-            };
-            for [i, j] in EDGES {
-                add(i, j, &mut || {
-                    let [a, b] = edges.root(edge(old[i], old[j]));
-                    [0, a, b]
-                });
             }
-            for (side, diagonals) in FACET_DIAGONALS.iter().enumerate() {
-                for &[i, j] in diagonals {
-                    add(i, j, &mut || [1, quads.root(name(6 * h + side as u32)), NONE]);
-                }
+            joined.sort_unstable();
+            joined.dedup();
+            if joined.windows(2).any(|w| w[0].0 == w[1].0) {
+                return Err(Refusal::Improper);
             }
-            for [i, j] in BODY_DIAGONALS {
-                add(i, j, &mut || [2, h, NONE]);
-            }
-        }
-        joined.sort_unstable();
-        joined.dedup();
-        if joined.windows(2).any(|w| w[0].0 == w[1].0) {
-            return Err(Refusal::Improper);
         }
         Ok(touched.into_iter().map(|v| [v, becomes[&v]]).filter(|[v, to]| v != to).collect())
     }
 }
+
+/// What joins two corners of a cube.
+#[derive(Clone, Copy)]
+enum Join {
+    Edge,
+    /// The diagonal of the facet on this side.
+    Diagonal(u32),
+    Body,
+}
+
+/// Per two corners what joins them; nothing is asked of a corner and itself.
+static JOINS: LazyLock<[[Join; 8]; 8]> = LazyLock::new(|| {
+    let mut joins = [[Join::Body; 8]; 8];
+    let mut set = |[i, j]: [usize; 2], join| (joins[i][j], joins[j][i]) = (join, join);
+    EDGES.into_iter().for_each(|pair| set(pair, Join::Edge));
+    for (side, diagonals) in (0..).zip(FACET_DIAGONALS) {
+        diagonals.into_iter().for_each(|pair| set(pair, Join::Diagonal(side)));
+    }
+    joins
+});
 
 /// Disjoint sets of a few keys; a key that was never joined is alone. The root is the smallest key.
 struct Sets<K>(FxHashMap<K, K>);
