@@ -36,6 +36,12 @@ const SMALLEST: usize = 24;
 /// Cavities inward flips may look at where shelling found nothing valid.
 const MOST_CAVITIES: u64 = 100_000;
 
+/// Surfaces of more quads are shelled once.
+const MOST_RETRIED: usize = 1000;
+
+/// Surfaces of more quads are constructed only if nothing else filled them.
+const MOST_CONSTRUCTED: usize = 300;
+
 /// The place of a mesh in the order; smaller is better.
 type Rank = (u8, f64);
 
@@ -88,6 +94,20 @@ pub(crate) fn fill_best(
         }
         trial.consider(filled)?;
     }
+    let by_shelling = trial.class() == Some(2) && surface.n_quads() <= MOST_RETRIED && options.layers.is_none();
+    if by_shelling && ctx.stop().is_none() && no_room(surface, boundary).is_none() {
+        // More room behind the surface, and other ties.
+        let mut again = options.clone();
+        again.shell.pillows = vec![2, 1];
+        again.shell.seeds *= 2;
+        let other = Context { seed: ctx.seed.wrapping_add(1), ..*ctx };
+        for filled in crate::fill::shelled(problem, &again, &other, &mut result)? {
+            if ctx.stop().is_some() || trial.class().is_some_and(|class| class < 2) {
+                break;
+            }
+            trial.consider(filled)?;
+        }
+    }
     let mut why_none = None;
     if options.strategy == Strategy::Auto && !trial.is_good() && ctx.stop().is_none() {
         why_none = no_room(surface, boundary);
@@ -110,8 +130,13 @@ pub(crate) fn fill_best(
                 trial.consider(filled)?;
             }
         }
-        let certified = trial.class().is_some_and(|class| class < 2);
-        if (trial.best.is_none() || why_none.is_none() && !certified) && ctx.stop().is_none() {
+        // A construction has some 46 hexes a quad: where shelling left a few of its own invalid, it is tried on small surfaces only.
+        let worth_trying = match trial.class() {
+            None => true,
+            Some(2) => why_none.is_none() && surface.n_quads() <= MOST_CONSTRUCTED,
+            Some(_) => false,
+        };
+        if worth_trying && ctx.stop().is_none() {
             construct(problem, options, ctx, &mut result)?;
             for filled in result.meshes.drain(..) {
                 trial.consider(filled)?;
