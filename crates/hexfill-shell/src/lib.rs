@@ -7,6 +7,7 @@
 mod angles;
 mod close;
 mod compress;
+mod develop;
 mod deviation;
 mod front;
 mod glue;
@@ -17,6 +18,7 @@ mod lens;
 mod lift;
 mod pairs;
 mod plug;
+mod polycube;
 mod residual;
 mod shell;
 mod solve;

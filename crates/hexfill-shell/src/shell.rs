@@ -2,9 +2,11 @@
 
 use crate::angles::wanted_hexes;
 use crate::compress::{Coarse, compress, uncompressed};
+use crate::develop::develop;
 use crate::deviation::{Deviation, deviation};
 use crate::front::Front;
 use crate::lift::lift;
+use crate::polycube::polycube;
 use crate::residual::fill_residual;
 use crate::solve::solve;
 use crate::stir::stir_front;
@@ -78,6 +80,8 @@ const CONTINUED: usize = 4;
 const RESIDUALS: usize = 4;
 /// Rounds of stirring for one of them.
 const STIRRING: u32 = 20;
+/// Meshes that cost less give every edge what it wants.
+const PERFECT: f32 = 1e-3;
 /// Surfaces of more quads are not swept by flips without compression too.
 const MOST_FINE: usize = 20_000;
 
@@ -94,7 +98,19 @@ pub fn shell(
     let fine = uncompressed(surface, &wanted);
     let is_fine = coarse.surface.n_quads() == surface.n_quads();
     let mut shelling = Shelling { coarse_quads: coarse.surface.n_quads(), left: usize::MAX, ..Shelling::default() };
+    let cells = develop(surface, &wanted, points).and_then(|d| polycube(surface, &d));
     for &pillows in &options.pillows {
+        if let (0, Some(hexes)) = (pillows, &cells) {
+            // Where all edges bend by right angles the cells of the grid are the answer.
+            keep(&mut shelling.meshes, &fine, surface, pillows, vec![hexes.clone()], options);
+            shelling.left = 0;
+            if shelling.meshes.iter().any(|m| m.cost < PERFECT) {
+                continue;
+            }
+        }
+        if surface.n_components() > 1 {
+            continue;
+        }
         let start = Start::new(&coarse, pillows);
         let mut meshes = start.complete(options, &mut shelling.left, ctx);
         let found = keep(&mut shelling.meshes, &coarse, surface, pillows, std::mem::take(&mut meshes), options);
@@ -163,7 +179,7 @@ impl<'a> Start<'a> {
         if !meshes.is_empty() {
             *left = 0;
         }
-        let is_perfect = |h: &Hexes| deviation(self.coarse, h).is_some_and(|d| d.cost < 1e-3);
+        let is_perfect = |h: &Hexes| deviation(self.coarse, h).is_some_and(|d| d.cost < PERFECT);
         if meshes.iter().any(is_perfect) {
             return meshes;
         }
