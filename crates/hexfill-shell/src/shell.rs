@@ -101,11 +101,11 @@ pub fn shell(
     let cells = develop(surface, &wanted, points).and_then(|d| polycube(surface, &d));
     for &pillows in &options.pillows {
         if let (0, Some(hexes)) = (pillows, &cells) {
-            // Where all edges bend by right angles the cells of the grid are the answer.
             keep(&mut shelling.meshes, &fine, surface, pillows, vec![hexes.clone()], options);
             shelling.left = 0;
             if shelling.meshes.iter().any(|m| m.cost < PERFECT) {
-                continue;
+                // All edges bend by right angles: nothing is better than the cells of the grid.
+                break;
             }
         }
         if surface.n_components() > 1 {
