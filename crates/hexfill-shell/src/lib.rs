@@ -3,8 +3,11 @@
 //! Two engines. By layers: `angles` what every edge wants -> `compress` parallel chords become one -> `solve` layers and
 //! closings (`layer`) on the void (`void`, `kinds`) -> `lift` back to the fine surface. By flips: `front` (`pairs`) what is
 //! left -> `lens` the smallest lens of its dual -> `zip` flips that empty it -> `sweep` until nothing is left.
+//! Before them: `plug` cuts handles, `bridge` joins cavities to the outside. Without any sweep: `polycube`, `between`.
 
 mod angles;
+mod between;
+mod bridge;
 mod close;
 mod compress;
 mod develop;

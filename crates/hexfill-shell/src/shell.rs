@@ -1,6 +1,7 @@
 //! The engine: meshes of a surface by layers, by flips, and by flips where layers get no further.
 
 use crate::angles::wanted_hexes;
+use crate::between::between;
 use crate::compress::{Coarse, compress, uncompressed};
 use crate::develop::develop;
 use crate::deviation::{Deviation, deviation};
@@ -109,6 +110,16 @@ pub fn shell(
             }
         }
         if surface.n_components() > 1 {
+            let Some(points) = points.filter(|_| surface.n_quads() <= MOST_FINE && ctx.stop().is_none()) else { continue };
+            if let (0, Some(hexes)) = (pillows, between(surface, points)) {
+                keep(&mut shelling.meshes, &fine, surface, pillows, vec![hexes], options);
+                shelling.left = 0;
+            }
+            // Bridges and plugs join chords of all multiplicities, so they need the surface as it is.
+            if let Some(start) = Start::new(&fine, pillows).cut_open(points, surface, pillows) {
+                let meshes = start.complete(options, &mut shelling.left, ctx);
+                keep(&mut shelling.meshes, &fine, surface, pillows, meshes, options);
+            }
             continue;
         }
         let start = Start::new(&coarse, pillows);
@@ -121,7 +132,7 @@ pub fn shell(
             && let Some(points) = points
         {
             // Plugs join chords of all multiplicities, so they need the surface as it is.
-            if let Some(start) = Start::new(&fine, pillows).plugged(points, surface.genus()) {
+            if let Some(start) = Start::new(&fine, pillows).cut_open(points, surface, pillows) {
                 let meshes = start.complete(options, &mut shelling.left, ctx);
                 keep(&mut shelling.meshes, &fine, surface, pillows, meshes, options);
             }
@@ -151,8 +162,9 @@ impl<'a> Start<'a> {
         Self { coarse, void, quads: coarse.surface.quads().iter().map(|q| q.map(|v| v.0)).collect() }
     }
 
-    /// This start with all handles cut; `None` if one is not. `points` are those of the surface, which is not compressed.
-    fn plugged(self, points: &[[f64; 3]], genus: u64) -> Option<Self> {
+    /// This start with all cavities joined to the outside and all handles cut; `None` if one is not. `points` are those of the surface,
+    /// which is not compressed.
+    fn cut_open(self, points: &[[f64; 3]], surface: &QuadSurface, pillows: u32) -> Option<Self> {
         // Pillows copy the surface vertex by vertex.
         let mut near = points.to_vec();
         let n = points.len();
@@ -163,7 +175,10 @@ impl<'a> Start<'a> {
         }
         near.extend(origin[n..].iter().map(|&v| points[v as usize]));
         let mut front = self.void.to_front(&self.quads)?;
-        for _ in 0..genus {
+        for _ in 1..surface.n_components() {
+            front = front.bridged(&mut near, pillows)?;
+        }
+        for _ in 0..surface.genus() {
             front = front.plug(&mut near)?;
         }
         Some(Self { void: self.void.after(&front)?, ..self })
