@@ -61,9 +61,9 @@ pub(crate) fn between(surface: &QuadSurface, points: &[[f64; 3]]) -> Option<Vec<
     let (_, image) = best?;
     let columns: Vec<(usize, u32)> = (0..).zip(image.iter().copied()).filter(|&(_, w)| w != NONE).collect();
     let long = columns.iter().map(|&(v, w)| square_distance(points[v], points[w as usize]).sqrt()).sum::<f64>();
-    let edges = surface.darts().map(|d| {
-        square_distance(points[surface.origin(d).index()], points[surface.target(d).index()]).sqrt()
-    });
+    let edges = surface
+        .darts()
+        .map(|d| square_distance(points[surface.origin(d).index()], points[surface.target(d).index()]).sqrt());
     let edge = edges.sum::<f64>() / (4 * surface.n_quads()) as f64;
     let ratio = long / columns.len() as f64 / edge;
     // Many thin layers are nobody's wish: the count is bounded by that of a cube.

@@ -38,11 +38,7 @@ fn cross(a: Site, b: Site) -> Site {
 
 /// The surface in the grid; `wanted` is per dart. `None` if it does not develop, or the place of a cavity cannot be told: that needs
 /// positions, and one component that faces outward.
-pub(crate) fn develop(
-    surface: &QuadSurface,
-    wanted: &[f32],
-    points: Option<&[[f64; 3]]>,
-) -> Option<Development> {
+pub(crate) fn develop(surface: &QuadSurface, wanted: &[f32], points: Option<&[[f64; 3]]>) -> Option<Development> {
     let mut development =
         Development { at: vec![[i32::MIN; 3]; surface.n_vertices()], normal: vec![[0; 3]; surface.n_quads()] };
     let mut components = Vec::new();
@@ -192,10 +188,11 @@ impl Affine {
     /// The map nearest to pairs (point, image), by least squares; `None` if the points lie in a plane.
     fn fit(pairs: impl Iterator<Item = ([f64; 3], [f64; 3])> + Clone) -> Option<Self> {
         let n = pairs.clone().count() as f64;
-        let mean = |pick: fn(([f64; 3], [f64; 3])) -> [f64; 3]| {
-            pairs.clone().map(pick).fold([0.0; 3], |s, p| [0, 1, 2].map(|k| s[k] + p[k] / n))
-        };
-        let (from, to) = (mean(|p| p.0), mean(|p| p.1));
+        let (mut from, mut to) = ([0.0; 3], [0.0; 3]);
+        for (p, image) in pairs.clone() {
+            (0..3).for_each(|k| from[k] += p[k] / n);
+            (0..3).for_each(|k| to[k] += image[k] / n);
+        }
         let (mut square, mut mixed) = ([[0.0; 3]; 3], [[0.0; 3]; 3]);
         for (p, image) in pairs {
             for i in 0..3 {

@@ -70,7 +70,7 @@ impl Cells {
     /// The cell across a facet that is not on the surface.
     fn beside(&self, cell: usize, facet: usize) -> Option<u32> {
         let mut site = self.sites[cell];
-        site[facet / 2] += if facet % 2 == 0 { -1 } else { 1 };
+        site[facet / 2] += if facet.is_multiple_of(2) { -1 } else { 1 };
         self.number.get(&site).copied()
     }
 
@@ -180,8 +180,8 @@ mod tests {
     #[test]
     fn plates_with_tunnels_and_boxes_with_cavities() {
         let solid = |size: [usize; 3], empty: fn([usize; 3]) -> bool| {
-            let all = (0..size[0] * size[1] * size[2])
-                .map(|i| [i % size[0], i / size[0] % size[1], i / size[0] / size[1]]);
+            let all =
+                (0..size[0] * size[1] * size[2]).map(|i| [i % size[0], i / size[0] % size[1], i / size[0] / size[1]]);
             let cells: BTreeSet<[usize; 3]> = all.filter(|&c| !empty(c)).collect();
             for bend in [0.0, 0.03] {
                 assert_eq!(filled(size, &cells, bend), Some(cells.len()));
@@ -192,7 +192,11 @@ mod tests {
         solid([3, 3, 3], |c| c == [1; 3]);
         solid([7, 5, 5], |[x, y, z]| (y, z) == (2, 2) && (x == 1 || (3..6).contains(&x)));
         solid([7, 7, 5], |[x, y, z]| {
-            z == 2 && (1..6).contains(&x) && (1..6).contains(&y) && (x, y) != (3, 3) && !((2..5).contains(&x) && (2..5).contains(&y))
+            z == 2
+                && (1..6).contains(&x)
+                && (1..6).contains(&y)
+                && (x, y) != (3, 3)
+                && !((2..5).contains(&x) && (2..5).contains(&y))
         });
     }
 

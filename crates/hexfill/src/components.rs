@@ -37,7 +37,7 @@ pub(crate) fn solids(surface: &QuadSurface, points: Option<&[[f64; 3]]>) -> Vec<
     let n = surface.n_components();
     let Some(points) = points.filter(|_| n > 1) else { return (0..n).map(|c| vec![c]).collect() };
     let holders = holders(surface, points);
-    let mut solids: Vec<Vec<usize>> = (0..n).filter(|&c| holders[c].len() % 2 == 0).map(|c| vec![c]).collect();
+    let mut solids: Vec<Vec<usize>> = (0..n).filter(|&c| holders[c].len().is_multiple_of(2)).map(|c| vec![c]).collect();
     for c in (0..n).filter(|&c| holders[c].len() % 2 == 1) {
         let owner = holders[c].iter().find(|&&h| holders[h].len() + 1 == holders[c].len());
         match owner.and_then(|o| solids.iter_mut().find(|s| s[0] == *o)) {
@@ -130,4 +130,53 @@ pub(crate) fn fill_apart(
         result.meshes.push(Filled { mesh, route, start });
     }
     Ok(result)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fill::fill;
+    use hexfill_mesh::generate::voxel_surface;
+
+    /// The boundary of filled cells with its positions: a vertex is known by the cells' corners.
+    fn voxels(size: [usize; 3], filled: impl Fn([usize; 3]) -> bool) -> Problem {
+        use hexfill_mesh::cube::{FACETS, POSITIONS};
+        let surface = voxel_surface(size, &filled).unwrap();
+        let inside = |p: [i64; 3]| (0..3).all(|k| (0..size[k] as i64).contains(&p[k])) && filled(p.map(|x| x as usize));
+        let mut points = vec![[f64::NAN; 3]; surface.n_vertices()];
+        let mut quads = surface.quads().iter();
+        for i in 0..size[0] * size[1] * size[2] {
+            let cell = [i % size[0], i / size[0] % size[1], i / size[0] / size[1]].map(|x| x as i64);
+            for (f, facet) in FACETS.iter().enumerate().filter(|_| inside(cell)) {
+                let mut beside = cell;
+                beside[f / 2] += if f % 2 == 0 { -1 } else { 1 };
+                if !inside(beside) {
+                    let quad = quads.next().unwrap();
+                    for (v, &k) in quad.iter().zip(facet) {
+                        points[v.index()] = [0, 1, 2].map(|c| (cell[c] + i64::from(POSITIONS[k][c])) as f64);
+                    }
+                }
+            }
+        }
+        let mut problem = Problem::from_surface("voxels", surface);
+        problem.points = Some(points);
+        problem
+    }
+
+    #[test]
+    fn solids_own_their_cavities() {
+        // A box with a cavity, an island in it, and a box beside.
+        let filled = |[x, y, z]: [usize; 3]| {
+            let off = [x, y, z].map(|c| c.abs_diff(3)).into_iter().max().unwrap();
+            x == 8 || x < 7 && off != 2 && off != 1
+        };
+        let problem = voxels([9, 7, 7], filled);
+        assert_eq!(problem.surface.n_components(), 4);
+        let solids = solids(&problem.surface, problem.points.as_deref());
+        assert_eq!(solids.iter().map(Vec::len).sum::<usize>(), 4);
+        assert_eq!(solids.len(), 3);
+        let cells = (0..9 * 49).filter(|i| filled([i % 9, i / 9 % 7, i / 63])).count();
+        let made = fill(&problem, &FillOptions::default(), &Context::default()).unwrap();
+        assert_eq!(made.meshes[0].mesh.n_hexes(), cells);
+    }
 }
