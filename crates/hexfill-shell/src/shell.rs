@@ -1,10 +1,13 @@
 //! The engine: meshes of a surface by layers, by flips, and by flips where layers get no further.
 
 use crate::angles::wanted_hexes;
+use crate::between::between;
 use crate::compress::{Coarse, compress, uncompressed};
+use crate::develop::develop;
 use crate::deviation::{Deviation, deviation};
 use crate::front::Front;
 use crate::lift::lift;
+use crate::polycube::polycube;
 use crate::residual::fill_residual;
 use crate::solve::solve;
 use crate::stir::stir_front;
@@ -82,6 +85,8 @@ const CONTINUED: usize = 4;
 const RESIDUALS: usize = 4;
 /// Rounds of stirring for one of them.
 const STIRRING: u32 = 20;
+/// Meshes that cost less give every edge what it wants.
+const PERFECT: f32 = 1e-3;
 /// Surfaces of more quads are not swept by flips without compression too.
 const MOST_FINE: usize = 20_000;
 
@@ -98,7 +103,31 @@ pub fn shell(
     let fine = uncompressed(surface, &wanted);
     let is_fine = coarse.surface.n_quads() == surface.n_quads();
     let mut shelling = Shelling { coarse_quads: coarse.surface.n_quads(), left: usize::MAX, ..Shelling::default() };
+    let cells = develop(surface, &wanted, points).and_then(|d| polycube(surface, &d));
     for &pillows in &options.pillows {
+        if let (0, Some(hexes)) = (pillows, &cells) {
+            let grid = vec![Glued::at_once("grid", hexes.clone())];
+            keep(&mut shelling.meshes, &fine, surface, points, pillows, grid, options);
+            shelling.left = 0;
+            if shelling.meshes.iter().any(|m| m.cost < PERFECT) {
+                // All edges bend by right angles: nothing is better than the cells of the grid.
+                break;
+            }
+        }
+        if surface.n_components() > 1 {
+            let Some(given) = points.filter(|_| surface.n_quads() <= MOST_FINE && ctx.stop().is_none()) else { continue };
+            if let (0, Some(hexes)) = (pillows, between(surface, given)) {
+                let columns = vec![Glued::at_once("columns", hexes)];
+                keep(&mut shelling.meshes, &fine, surface, points, pillows, columns, options);
+                shelling.left = 0;
+            }
+            // Bridges and plugs join chords of all multiplicities, so they need the surface as it is.
+            if let Some(start) = Start::new(&fine, pillows).cut_open(given, surface, pillows) {
+                let meshes = start.complete(options, &mut shelling.left, ctx);
+                keep(&mut shelling.meshes, &fine, surface, points, pillows, meshes, options);
+            }
+            continue;
+        }
         let start = Start::new(&coarse, pillows);
         let mut meshes = start.complete(options, &mut shelling.left, ctx);
         let found = keep(&mut shelling.meshes, &coarse, surface, points, pillows, std::mem::take(&mut meshes), options);
@@ -109,7 +138,7 @@ pub fn shell(
             && let Some(given) = points
         {
             // Plugs join chords of all multiplicities, so they need the surface as it is.
-            if let Some(start) = Start::new(&fine, pillows).plugged(given, surface.genus()) {
+            if let Some(start) = Start::new(&fine, pillows).cut_open(given, surface, pillows) {
                 let meshes = start.complete(options, &mut shelling.left, ctx);
                 keep(&mut shelling.meshes, &fine, surface, points, pillows, meshes, options);
             }
@@ -123,15 +152,17 @@ pub fn shell(
 
 type Hexes = Vec<[u32; 8]>;
 
-/// Coarse hexes in the order they were glued, and how many there were after each stage but the last.
-#[derive(Clone)]
+/// Coarse hexes in the order they were glued, and how many there were after each stage.
 struct Glued {
     hexes: Hexes,
-    after: [usize; STAGES.len() - 1],
+    stages: Vec<(&'static str, usize)>,
 }
 
-/// Where hexes come from.
-const STAGES: [&str; 5] = ["pillows", "plugs", "layers", "flips", "residual"];
+impl Glued {
+    fn at_once(stage: &'static str, hexes: Hexes) -> Self {
+        Self { stages: vec![(stage, hexes.len())], hexes }
+    }
+}
 
 /// Where sweeps start: the surface, perhaps behind pillows and cut by plugs.
 struct Start<'a> {
@@ -152,8 +183,9 @@ impl<'a> Start<'a> {
         Self { coarse, n_pillows, void, quads: coarse.surface.quads().iter().map(|q| q.map(|v| v.0)).collect() }
     }
 
-    /// This start with all handles cut; `None` if one is not. `points` are those of the surface, which is not compressed.
-    fn plugged(self, points: &[[f64; 3]], genus: u64) -> Option<Self> {
+    /// This start with all cavities joined to the outside and all handles cut; `None` if one is not. `points` are those of the surface,
+    /// which is not compressed.
+    fn cut_open(self, points: &[[f64; 3]], surface: &QuadSurface, pillows: u32) -> Option<Self> {
         // Pillows copy the surface vertex by vertex.
         let mut near = points.to_vec();
         let n = points.len();
@@ -164,7 +196,10 @@ impl<'a> Start<'a> {
         }
         near.extend(origin[n..].iter().map(|&v| points[v as usize]));
         let mut front = self.void.to_front(&self.quads)?;
-        for _ in 0..genus {
+        for _ in 1..surface.n_components() {
+            front = front.bridged(&mut near, pillows)?;
+        }
+        for _ in 0..surface.genus() {
             front = front.plug(&mut near)?;
         }
         Some(Self { void: self.void.after(&front)?, ..self })
@@ -186,7 +221,7 @@ impl<'a> Start<'a> {
         if !meshes.is_empty() {
             *left = 0;
         }
-        let is_perfect = |m: &Glued| deviation(self.coarse, &m.hexes).is_some_and(|d| d.cost < 1e-3);
+        let is_perfect = |m: &Glued| deviation(self.coarse, &m.hexes).is_some_and(|d| d.cost < PERFECT);
         if meshes.iter().any(is_perfect) {
             return meshes;
         }
@@ -241,7 +276,14 @@ impl<'a> Start<'a> {
 
     /// A complete mesh, given how many hexes there were after layers and after flips.
     fn glued(&self, hexes: Hexes, after_layers: usize, after_flips: usize) -> Glued {
-        Glued { hexes, after: [self.n_pillows, self.void.hexes.len(), after_layers, after_flips] }
+        let stages = vec![
+            ("pillows", self.n_pillows),
+            ("plugs", self.void.hexes.len()),
+            ("layers", after_layers),
+            ("flips", after_flips),
+            ("residual", hexes.len()),
+        ];
+        Glued { hexes, stages }
     }
 }
 
@@ -287,10 +329,15 @@ fn keep(
         let (d, glued) = &measured[i];
         let Ok(lifted) = lift(coarse, surface.n_vertices() as u32, points, &glued.hexes) else { continue };
         let Ok(mesh) = HexMesh::try_new(lifted.n_vertices as usize, &lifted.hexes) else { continue };
-        // Fine hexes before each stage and after the last.
-        let ends = [0].into_iter().chain(glued.after).chain([glued.hexes.len()]);
-        let fine: Vec<usize> = ends.map(|n| lifted.before[n]).collect();
-        let stages = STAGES.into_iter().zip(fine.windows(2).map(|w| w[1] - w[0])).filter(|(_, n)| *n > 0).collect();
+        let mut before = 0;
+        let mut stages = Vec::new();
+        for &(stage, n) in &glued.stages {
+            let after = lifted.before[n];
+            if after > before {
+                stages.push((stage, after - before));
+            }
+            before = after;
+        }
         kept.push(Shelled { mesh, points: lifted.points, cost: d.cost, pillows, stages });
     }
     kept.len() - before

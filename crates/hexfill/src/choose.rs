@@ -86,9 +86,7 @@ pub(crate) fn fill_best(
     for filled in result.meshes.drain(..) {
         trial.consider(filled)?;
     }
-    // Where one component lies in another, shells do not sweep.
-    let shelled = if surface.n_components() == 1 { shelled(problem, options, ctx, &mut result)? } else { Vec::new() };
-    for filled in shelled {
+    for filled in shelled(problem, options, ctx, &mut result)? {
         if ctx.stop().is_some() && trial.best.is_some() {
             break;
         }

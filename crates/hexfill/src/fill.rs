@@ -1,7 +1,7 @@
 //! `fill`: from a problem to verified meshes. Picks the strategy, and lets nothing out that the judge refused.
 
 use crate::choose::Prefer;
-use crate::components::{depths, fill_apart};
+use crate::components::{fill_apart, solids};
 use crate::geometry::boundary_points;
 use crate::problem::Problem;
 use crate::simplify::simplify_construction;
@@ -231,10 +231,9 @@ pub fn check_fillable(surface: &QuadSurface) -> Result<(), FillError> {
 /// [`FillError`].
 pub fn fill(problem: &Problem, options: &FillOptions, ctx: &Context<'_>) -> Result<FillResult, FillError> {
     check_fillable(&problem.surface)?;
-    let apart = problem.surface.n_components() > 1
-        && problem.points.as_ref().is_none_or(|points| depths(&problem.surface, points).iter().all(|&d| d == 0));
-    if apart && matches!(options.interior, InteriorFrom::BuiltIn) {
-        let result = fill_apart(problem, options, ctx)?;
+    let solids = solids(&problem.surface, problem.points.as_deref());
+    if solids.len() > 1 && matches!(options.interior, InteriorFrom::BuiltIn) {
+        let result = fill_apart(problem, &solids, options, ctx)?;
         result.meshes.iter().try_for_each(|m| verify(&problem.surface, &m.mesh, m.route))?;
         return Ok(result);
     }
@@ -262,7 +261,7 @@ pub(crate) fn fill_component(
     }
     let mut result = FillResult { meshes: Vec::new(), stop: StopReason::Finished, tried: Vec::new() };
     let by_atlas = matches!(options.strategy, Strategy::Auto | Strategy::Atlas);
-    let by_shelling = matches!(options.strategy, Strategy::Auto | Strategy::Shell) && surface.n_components() == 1;
+    let by_shelling = matches!(options.strategy, Strategy::Auto | Strategy::Shell);
     if small && by_atlas {
         // What the atlas does not hold is shelled before inward flips have their turn.
         let cavities = if options.strategy == Strategy::Auto && options.count == 1 && !options.improve { 1 } else { options.inward_cavities };
