@@ -223,7 +223,8 @@ impl Lattice {
         let sizes = [a, b, c];
         let mut points = vec![u32::MAX; (a as usize + 1) * (b as usize + 1) * (c as usize + 1)];
         let index = |p: [u32; 3]| ((p[2] * (b + 1) + p[1]) * (a + 1) + p[0]) as usize;
-        let scaled = |corner: usize| -> [u32; 3] { std::array::from_fn(|k| u32::from(POSITIONS[corner][k]) * sizes[k]) };
+        let scaled =
+            |corner: usize| -> [u32; 3] { std::array::from_fn(|k| u32::from(POSITIONS[corner][k]) * sizes[k]) };
         let next_id = &mut self.n_vertices;
         let mut fresh = || {
             *next_id += 1;

@@ -115,7 +115,9 @@ pub fn shell(
             }
         }
         if surface.n_components() > 1 {
-            let Some(given) = points.filter(|_| surface.n_quads() <= MOST_FINE && ctx.stop().is_none()) else { continue };
+            let Some(given) = points.filter(|_| surface.n_quads() <= MOST_FINE && ctx.stop().is_none()) else {
+                continue;
+            };
             if let (0, Some(hexes)) = (pillows, between(surface, given)) {
                 let columns = vec![Glued::at_once("columns", hexes)];
                 keep(&mut shelling.meshes, &fine, surface, points, pillows, columns, options);

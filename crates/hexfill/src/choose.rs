@@ -147,9 +147,7 @@ pub(crate) fn fill_best(
     let choice = match (why_none, seen.len()) {
         (Some(why), _) => Some(format!("no other mesh was tried, since none can be valid: {why}")),
         (None, 0 | 1) => None,
-        (None, _) => best.as_ref().map(|(_, filled, _)| {
-            format!("{}, the best of {}", words(filled), seen.join(", "))
-        }),
+        (None, _) => best.as_ref().map(|(_, filled, _)| format!("{}, the best of {}", words(filled), seen.join(", "))),
     };
     let stop = if result.stop == StopReason::Finished { ctx.stop().unwrap_or(result.stop) } else { result.stop };
     let choice = match layered {

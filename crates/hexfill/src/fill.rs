@@ -264,7 +264,11 @@ pub(crate) fn fill_component(
     let by_shelling = matches!(options.strategy, Strategy::Auto | Strategy::Shell);
     if small && by_atlas {
         // What the atlas does not hold is shelled before inward flips have their turn.
-        let cavities = if options.strategy == Strategy::Auto && options.count == 1 && !options.improve { 1 } else { options.inward_cavities };
+        let cavities = if options.strategy == Strategy::Auto && options.count == 1 && !options.improve {
+            1
+        } else {
+            options.inward_cavities
+        };
         search(surface, &FillOptions { inward_cavities: cavities, ..options.clone() }, ctx, &mut result)?;
     }
     if result.meshes.len() < options.count && by_shelling && ctx.stop().is_none() {
@@ -373,7 +377,12 @@ fn grow_towards(
                 let first = surface.n_vertices() as u32;
                 let (hexes, fresh) = ball.hexes_in(&boundary, mirrored, first);
                 let mesh = HexMesh::try_new((first + fresh) as usize, &hexes).expect("a ball's hexes glue properly");
-                accept(surface, Filled { mesh, route: Route::Growth, start: None, stages: Vec::new() }, options, result)?;
+                accept(
+                    surface,
+                    Filled { mesh, route: Route::Growth, start: None, stages: Vec::new() },
+                    options,
+                    result,
+                )?;
             }
         }
         if result.meshes.len() >= options.count || growth.is_exhausted() || growth.level() >= options.max_hexes {
@@ -433,7 +442,12 @@ pub(crate) fn construct(
         }
         let (mesh, start) = simplify_construction(made.mesh, made.start, options, ctx, &mut result.tried);
         if mesh.n_hexes() as u64 <= u64::from(options.max_hexes) {
-            accept(&problem.surface, Filled { mesh, route: Route::Construction, start, stages: Vec::new() }, options, result)?;
+            accept(
+                &problem.surface,
+                Filled { mesh, route: Route::Construction, start, stages: Vec::new() },
+                options,
+                result,
+            )?;
         }
         if result.meshes.len() >= options.count {
             break;

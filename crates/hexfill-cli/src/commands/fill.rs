@@ -8,9 +8,9 @@ use anyhow::bail;
 use hexfill::construct::{CellChoice, GivenTets, TetgenTets};
 use hexfill::io::Format;
 use hexfill::search::{Atlas, GrowOptions};
-use hexfill::{BoundaryLayers, 
-    Context, FillOptions, FillReport, Filled, GeometryReport, InteriorFrom, PlaceOptions, Placed, Problem, StopReason,
-    Strategy,
+use hexfill::{
+    BoundaryLayers, Context, FillOptions, FillReport, Filled, GeometryReport, InteriorFrom, PlaceOptions, Placed,
+    Problem, StopReason, Strategy,
 };
 use serde::Serialize;
 use std::path::{Path, PathBuf};
