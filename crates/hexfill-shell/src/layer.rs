@@ -36,6 +36,36 @@ enum Place {
     Side,
 }
 
+/// The places of all quads with respect to the rings looked at now; used again for the next ones without being cleared.
+#[derive(Debug, Default)]
+pub(crate) struct Places {
+    /// Twice the number of the look for ring quads, one more for side quads.
+    mark: Vec<u32>,
+    look: u32,
+}
+
+impl Places {
+    fn begin(&mut self, n_quads: usize) {
+        self.mark.resize(n_quads, 0);
+        self.look += 1;
+    }
+
+    fn get(&self, q: u32) -> Place {
+        match self.mark[q as usize] {
+            m if m == 2 * self.look => Place::Ring,
+            m if m == 2 * self.look + 1 => Place::Side,
+            _ => Place::Elsewhere,
+        }
+    }
+
+    fn set(&mut self, q: u32, place: Place) {
+        self.mark[q as usize] = 2 * self.look + u32::from(place == Place::Side);
+    }
+}
+
+/// On fronts of more quads, sides of more than half of them are not looked at: they take more hexes than they are worth.
+const LARGE: usize = 300;
+
 /// A hex between two facets at an angle beyond this (in right angles) cannot be good.
 const TOO_FLAT: f32 = 1.83;
 /// What such a hex costs more.
@@ -76,9 +106,9 @@ pub(crate) fn rings(void: &Void) -> Vec<Ring> {
 
 /// What a layer or a closing on these rings would be; `None` if the rings do not bound a side on their right, or a rung
 /// would have to go to two places.
-pub(crate) fn consider(void: &Void, rings: Vec<Ring>) -> Vec<Move> {
+pub(crate) fn consider(void: &Void, places: &mut Places, rings: Vec<Ring>) -> Vec<Move> {
     let mut found = Vec::new();
-    let Some((place, side)) = side_of(void, &rings) else { return found };
+    let Some(side) = side_of(void, places, &rings) else { return found };
     let Some(rungs) = Rungs::of(void, &rings) else { return found };
     let n_ring: usize = rings.iter().map(Vec::len).sum();
     let n_left = void.quads.len() - n_ring - side.len();
@@ -98,7 +128,7 @@ pub(crate) fn consider(void: &Void, rings: Vec<Ring>) -> Vec<Move> {
             }
             let t = void.twin[d] as usize;
             let weight = void.length[d] as f32;
-            if place[t >> 2] == Place::Ring {
+            if places.get((t >> 2) as u32) == Place::Ring {
                 cost += weight * square(void.wanted[d] - 1.0);
                 if void.wanted[d] >= TOO_FLAT
                     && void.origin(d as u32) < void.n_surface
@@ -130,12 +160,11 @@ pub(crate) fn consider(void: &Void, rings: Vec<Ring>) -> Vec<Move> {
     let fine_hexes = base_hexes * u64::from(height);
     if n_left == side.len() && void.quads.len() == n_ring + 2 * side.len() {
         let mut close = cost + left_close;
-        for (q, p) in place.iter().enumerate().filter(|(_, p)| **p == Place::Elsewhere) {
-            debug_assert!(*p == Place::Elsewhere);
-            for i in 0..4 {
-                let d = 4 * q + i;
+        let is_left = |q: usize| places.get(q as u32) == Place::Elsewhere;
+        for q in (0..void.quads.len()).filter(|&q| is_left(q)) {
+            for d in 4 * q..4 * q + 4 {
                 let t = void.twin[d] as usize;
-                if d < t && place[t >> 2] == Place::Elsewhere {
+                if d < t && is_left(t >> 2) {
                     close += void.length[d] as f32 * square(void.wanted[d] - 2.0);
                 }
             }
@@ -148,22 +177,25 @@ pub(crate) fn consider(void: &Void, rings: Vec<Ring>) -> Vec<Move> {
     found
 }
 
-/// The quads on the right of the rings, ascending, and the place of all quads. `None` if the right side meets the left.
-fn side_of(void: &Void, rings: &[Ring]) -> Option<(Vec<Place>, Vec<u32>)> {
-    let mut place = vec![Place::Elsewhere; void.quads.len()];
+/// The quads on the right of the rings, ascending; the places of all quads are set. `None` if the right side meets the left, or is
+/// too large.
+fn side_of(void: &Void, places: &mut Places, rings: &[Ring]) -> Option<Vec<u32>> {
+    let n = void.quads.len();
+    let most = if n > LARGE { n / 2 } else { n };
+    places.begin(n);
     for &d in rings.iter().flatten() {
-        if place[(d >> 2) as usize] == Place::Ring {
+        if places.get(d >> 2) == Place::Ring {
             return None;
         }
-        place[(d >> 2) as usize] = Place::Ring;
+        places.set(d >> 2, Place::Ring);
     }
     let mut side = Vec::new();
     for &d in rings.iter().flatten() {
         let q = void.twin[next(d) as usize] >> 2;
-        match place[q as usize] {
+        match places.get(q) {
             Place::Ring => return None,
             Place::Elsewhere => {
-                place[q as usize] = Place::Side;
+                places.set(q, Place::Side);
                 side.push(q);
             }
             Place::Side => {}
@@ -171,20 +203,23 @@ fn side_of(void: &Void, rings: &[Ring]) -> Option<(Vec<Place>, Vec<u32>)> {
     }
     let mut at = 0;
     while at < side.len() {
+        if side.len() > most {
+            return None;
+        }
         for d in 4 * side[at]..4 * side[at] + 4 {
             let q = void.twin[d as usize] >> 2;
-            if place[q as usize] == Place::Elsewhere {
-                place[q as usize] = Place::Side;
+            if places.get(q) == Place::Elsewhere {
+                places.set(q, Place::Side);
                 side.push(q);
             }
         }
         at += 1;
     }
-    if rings.iter().flatten().any(|&d| place[(void.twin[prev(d) as usize] >> 2) as usize] != Place::Elsewhere) {
+    if rings.iter().flatten().any(|&d| places.get(void.twin[prev(d) as usize] >> 2) != Place::Elsewhere) {
         return None;
     }
     side.sort_unstable();
-    Some((place, side))
+    Some(side)
 }
 
 /// The rungs as a map from the right rim to the left rim, one to one.

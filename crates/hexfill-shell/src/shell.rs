@@ -78,7 +78,7 @@ impl std::fmt::Display for Shelling {
 /// Restarts times the square of the quads: what layers may cost.
 const RESTART_WORK: u64 = 4_000_000;
 /// Restarts at least, unless fewer are asked for.
-const MIN_RESTARTS: u64 = 4;
+const MIN_RESTARTS: u64 = 2;
 /// Incomplete sweeps by layers that flips go on from.
 const CONTINUED: usize = 4;
 /// Residuals that are filled.

@@ -4,7 +4,7 @@
 //! by a random factor; what comes out is ranked by (cost, hexes after lifting, number of the restart), so the result does
 //! not depend on the number of threads.
 
-use crate::layer::{Move, Ring, consider, make, rings};
+use crate::layer::{Move, Places, Ring, consider, make, rings};
 use crate::void::{Void, next, prev};
 use hexfill_mesh::{Context, Random};
 use rayon::prelude::*;
@@ -65,11 +65,12 @@ fn sweep(start: &Void, restart: u64, ctx: &Context<'_>) -> Option<Sweep> {
     let mut random = Random::new(ctx.seed.wrapping_mul(0x1_0001).wrapping_add(restart));
     let per_hex = PER_HEX[(restart % PER_HEX.len() as u64) as usize];
     let mut sweep = Sweep { void: start.clone(), cost: 0.0, fine_hexes: 0, restart };
+    let mut places = Places::default();
     while !sweep.is_complete() {
         if ctx.stop().is_some() {
             return None;
         }
-        let mut moves = moves(&sweep.void);
+        let mut moves = moves(&sweep.void, &mut places);
         // The plain sweep breaks ties by order; noise makes the order of equals random as well.
         let mut order: Vec<(f32, u32)> = (0..moves.len() as u32)
             .map(|i| {
@@ -88,19 +89,19 @@ fn sweep(start: &Void, restart: u64, ctx: &Context<'_>) -> Option<Sweep> {
 }
 
 /// All moves that may be possible now, in a fixed order.
-fn moves(void: &Void) -> Vec<Move> {
+fn moves(void: &Void, places: &mut Places) -> Vec<Move> {
     let rings = rings(void);
     let mut found: Vec<Move> = Vec::new();
     let mut separates = vec![false; rings.len()];
     for (i, ring) in rings.iter().enumerate() {
-        let moves = consider(void, vec![ring.clone()]);
+        let moves = consider(void, places, vec![ring.clone()]);
         separates[i] = !moves.is_empty();
         found.extend(moves);
     }
     let mut seen = FxHashSet::default();
     for set in patch_sets(void, &rings) {
         if set.len() > 1 && seen.insert(set.clone()) {
-            found.extend(consider(void, set.iter().map(|&r| rings[r].clone()).collect()));
+            found.extend(consider(void, places, set.iter().map(|&r| rings[r].clone()).collect()));
         }
     }
     if rings.len() <= MOST_PAIRED && !separates.iter().all(|&s| s) {
@@ -108,7 +109,7 @@ fn moves(void: &Void) -> Vec<Move> {
             for j in i + 1..rings.len() {
                 let same_height = void.length[rings[i][0] as usize] == void.length[rings[j][0] as usize];
                 if !separates[i] && !separates[j] && i / 2 != j / 2 && same_height && seen.insert(vec![i, j]) {
-                    found.extend(consider(void, vec![rings[i].clone(), rings[j].clone()]));
+                    found.extend(consider(void, places, vec![rings[i].clone(), rings[j].clone()]));
                 }
             }
         }
