@@ -55,6 +55,24 @@ fn a_construction_becomes_smaller_and_keeps_its_boundary() {
 }
 
 #[test]
+fn collapses_alone_need_no_balls() {
+    let dir = tempfile::tempdir().unwrap();
+    let before = constructed(dir.path(), "large.json");
+    let args = ["simplify", "large.json", "-o", "small.json", "--collapse-only", "--json"];
+    let (code, report, err) = hexfill(dir.path(), &args);
+    assert_eq!(code, 0, "{err}");
+    let report = json(&report);
+    assert_eq!(report["balls"], 0);
+    assert!(report["sheets"].as_u64().unwrap() > 0, "{report}");
+    let hexes = report["hexes"].as_u64().unwrap();
+    assert_eq!(hexes + report["collapsed_hexes"].as_u64().unwrap(), before);
+    assert_judged(dir.path(), "small.json", hexes);
+    let (code, _, _) =
+        hexfill(dir.path(), &["simplify", "large.json", "-o", "x.json", "--collapse-only", "--balls", "9"]);
+    assert_eq!(code, 2);
+}
+
+#[test]
 fn what_cannot_become_smaller_is_written_as_it_was() {
     let dir = tempfile::tempdir().unwrap();
     let (code, _, err) = hexfill(dir.path(), &["fill", ":cube", "-o", "cube.json"]);

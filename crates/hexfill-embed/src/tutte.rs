@@ -89,8 +89,7 @@ pub(crate) fn place(problem: &Problem, points: &mut [Vector], spread: f64, is_gu
             let row = laplacian.row(s).iter();
             row.filter(|(v, _)| problem.slot[*v as usize] as usize >= n).map(|&(v, w)| w * points[v as usize][k]).sum()
         });
-        let guess =
-            problem.free.iter().map(|&v| if is_guess { points[v as usize][k] } else { centre }).collect();
+        let guess = problem.free.iter().map(|&v| if is_guess { points[v as usize][k] } else { centre }).collect();
         let x = conjugate_gradients(problem, &laplacian, &right, guess);
         for (s, &v) in problem.free.iter().enumerate() {
             points[v as usize][k] = x[s];

@@ -67,7 +67,8 @@ fn cut_triangulation(k: u32) -> (QuadSurface, Vec<Point>) {
     let mut quads = Vec::new();
     for signs in (0..8).map(|s| [0, 1, 2].map(|c| if s >> c & 1 == 0 { 1 } else { -1 })) {
         let at = |i: i32, j: i32| [0, 1, 2].map(|c| signs[c] * [i, j, k - i - j][c]);
-        let up = (0..k).flat_map(|j| (0..k - j).map(move |i| (i, j))).map(|(i, j)| [at(i, j), at(i + 1, j), at(i, j + 1)]);
+        let up =
+            (0..k).flat_map(|j| (0..k - j).map(move |i| (i, j))).map(|(i, j)| [at(i, j), at(i + 1, j), at(i, j + 1)]);
         let down = (0..k - 1).flat_map(|j| (0..k - 1 - j).map(move |i| (i, j)));
         let down = down.map(|(i, j)| [at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]);
         for mut t in up.chain(down) {

@@ -67,7 +67,9 @@ fn side(surface: &QuadSurface, ring: &[bool], rim: &[Dart]) -> Vec<bool> {
     while let Some(d) = stack.pop() {
         let q = d.quad().index();
         if !ring[q] && !std::mem::replace(&mut seen[q], true) {
-            stack.extend((0..4).map(|_| d).scan(d, |at, _| Some(std::mem::replace(at, at.next()))).map(|e| surface.twin(e)));
+            stack.extend(
+                (0..4).map(|_| d).scan(d, |at, _| Some(std::mem::replace(at, at.next()))).map(|e| surface.twin(e)),
+            );
         }
     }
     seen
@@ -246,6 +248,8 @@ fn main() {
         panels += 1;
     }
     let width = PANEL * panels as f64;
-    let head = format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {width} {PANEL}' width='{width}' height='{PANEL}'>");
+    let head = format!(
+        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {width} {PANEL}' width='{width}' height='{PANEL}'>"
+    );
     std::fs::write(output, format!("{head}\n{body}</svg>\n")).unwrap();
 }

@@ -9,16 +9,23 @@ fn main() {
             let words: Vec<&str> = line.split_whitespace().collect();
             match words.first() {
                 Some(&"v") => points.push([1, 2, 3].map(|i: usize| words[i].parse::<f64>().expect("number"))),
-                Some(&"f") => quads.push([1, 2, 3, 4].map(|i: usize| {
-                    words[i].split('/').next().expect("index").parse::<u32>().expect("number") - 1
-                })),
+                Some(&"f") => quads
+                    .push([1, 2, 3, 4].map(|i: usize| {
+                        words[i].split('/').next().expect("index").parse::<u32>().expect("number") - 1
+                    })),
                 _ => {}
             }
         }
         let surface = QuadSurface::try_new(points.len(), &quads).expect("a surface");
         let start = std::time::Instant::now();
         let made = hexfill_shell::shell(&surface, Some(&points), &Default::default(), &Context::default());
-        println!("{file}: {} quads ({}), left {}, {:.2?}", surface.n_quads(), made.coarse_quads, made.left, start.elapsed());
+        println!(
+            "{file}: {} quads ({}), left {}, {:.2?}",
+            surface.n_quads(),
+            made.coarse_quads,
+            made.left,
+            start.elapsed()
+        );
         for m in &made.meshes {
             println!("  {} hexes, cost {:.2}, {} pillows", m.mesh.n_hexes(), m.cost, m.pillows);
         }

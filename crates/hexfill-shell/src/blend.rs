@@ -42,7 +42,8 @@ pub(crate) fn springs(
         let mut moved = 0.0f64;
         for &i in &free {
             let total: f64 = neighbours[i].iter().map(|n| n.1).sum();
-            let mean: Point = std::array::from_fn(|k| neighbours[i].iter().map(|&(j, w)| w * at[j][k]).sum::<f64>() / total);
+            let mean: Point =
+                std::array::from_fn(|k| neighbours[i].iter().map(|&(j, w)| w * at[j][k]).sum::<f64>() / total);
             moved = (0..3).map(|k| (mean[k] - at[i][k]).abs()).fold(moved, f64::max);
             at[i] = mean;
         }

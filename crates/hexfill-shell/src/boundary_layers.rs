@@ -82,7 +82,8 @@ pub fn cut_boundary_layers(
     let mut at: Vec<[f64; 3]> = points[..n_surface as usize].to_vec();
     let mut cut = Vec::new();
     for hex in &hexes {
-        let sizes = AXES.map(|[i, j]| if is_cut[classes.of[&key(hex[i], hex[j])] as usize] { layers.cells() } else { 1 });
+        let sizes =
+            AXES.map(|[i, j]| if is_cut[classes.of[&key(hex[i], hex[j])] as usize] { layers.cells() } else { 1 });
         let [a, b, c] = sizes.map(|s| s as usize);
         let ids = lattice.points_of(hex, sizes);
         let id = |i: usize, j: usize, k: usize| ids[(k * (b + 1) + j) * (a + 1) + i];

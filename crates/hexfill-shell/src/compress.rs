@@ -152,9 +152,10 @@ impl Rails {
             // The rail beyond the chord on the left, if it is one all along.
             let d = self.curves[r][0];
             let beyond = |d: Dart| self.of_dart[d.opposite().index()];
-            let left = [d, surface.twin(d)].map(beyond).into_iter().find(|&s| {
-                s != NONE && s as usize != r && !used[s as usize]
-            });
+            let left = [d, surface.twin(d)]
+                .map(beyond)
+                .into_iter()
+                .find(|&s| s != NONE && s as usize != r && !used[s as usize]);
             if let Some(s) = left {
                 used[r] = true;
                 used[s as usize] = true;

@@ -26,10 +26,10 @@ pub(crate) fn deviation(coarse: &Coarse, hexes: &[[u32; 8]]) -> Option<Deviation
         for [i, j] in EDGES {
             *round.entry([hex[i].min(hex[j]), hex[i].max(hex[j])]).or_insert(0) += 1;
         }
-        fine_hexes +=
-            [[0, 1], [0, 3], [0, 4]].iter().map(|&[i, j]: &[usize; 2]| {
-                u64::from(segments[&[hex[i].min(hex[j]), hex[i].max(hex[j])]])
-            }).product::<u64>();
+        fine_hexes += [[0, 1], [0, 3], [0, 4]]
+            .iter()
+            .map(|&[i, j]: &[usize; 2]| u64::from(segments[&[hex[i].min(hex[j]), hex[i].max(hex[j])]]))
+            .product::<u64>();
     }
     let surface = &coarse.surface;
     let mut wanted: FxHashMap<[u32; 2], f32> = FxHashMap::default();

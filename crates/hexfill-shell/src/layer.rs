@@ -100,7 +100,10 @@ pub(crate) fn consider(void: &Void, rings: Vec<Ring>) -> Vec<Move> {
             let weight = void.length[d] as f32;
             if place[t >> 2] == Place::Ring {
                 cost += weight * square(void.wanted[d] - 1.0);
-                if void.wanted[d] >= TOO_FLAT && void.origin(d as u32) < void.n_surface && void.origin(t as u32) < void.n_surface {
+                if void.wanted[d] >= TOO_FLAT
+                    && void.origin(d as u32) < void.n_surface
+                    && void.origin(t as u32) < void.n_surface
+                {
                     cost += weight * FLAT_HEX;
                 }
             } else if d < t {
@@ -248,7 +251,8 @@ fn layer(void: &mut Void, the: &Move) -> Option<()> {
         void.hexes.push(hex);
     }
     let n = void.quads.len();
-    let (mut quads, mut wanted, mut length) = (Vec::with_capacity(n), Vec::with_capacity(4 * n), Vec::with_capacity(4 * n));
+    let (mut quads, mut wanted, mut length) =
+        (Vec::with_capacity(n), Vec::with_capacity(4 * n), Vec::with_capacity(4 * n));
     let mut rim_wanted: FxHashMap<u32, f32> = FxHashMap::default();
     for &d in the.rings.iter().flatten() {
         let left = void.twin[prev(d) as usize];
@@ -293,7 +297,10 @@ fn close(void: &mut Void, the: &Move) -> Option<()> {
             None => {}
         }
         // Columns join these edges into one sheet, which has one multiplicity.
-        if in_side[(l >> 2) as usize] || in_ring[(l >> 2) as usize] || void.length[r as usize] != void.length[l as usize] {
+        if in_side[(l >> 2) as usize]
+            || in_ring[(l >> 2) as usize]
+            || void.length[r as usize] != void.length[l as usize]
+        {
             return None;
         }
         match at.insert(void.origin(r), void.target(l)) {
@@ -318,7 +325,8 @@ fn close(void: &mut Void, the: &Move) -> Option<()> {
         let hex = [at[&a], at[&b], at[&c], at[&d], a, b, c, d];
         for v in [a, b, c, d] {
             // A vertical edge that is no rung is new.
-            let is_new = !rim.contains_key(&v) && void.pairs.get(v, at[&v]).is_some_and(|k| k != crate::kinds::Kind::Edge);
+            let is_new =
+                !rim.contains_key(&v) && void.pairs.get(v, at[&v]).is_some_and(|k| k != crate::kinds::Kind::Edge);
             if is_new || v == at[&v] {
                 return None;
             }

@@ -3,12 +3,16 @@
 //! Two engines. By layers: `angles` what every edge wants -> `compress` parallel chords become one -> `solve` layers and
 //! closings (`layer`) on the void (`void`, `kinds`) -> `lift` back to the fine surface. By flips: `front` (`pairs`) what is
 //! left -> `lens` the smallest lens of its dual -> `zip` flips that empty it -> `sweep` until nothing is left.
+//! Before them: `plug` cuts handles, `bridge` joins cavities to the outside. Without any sweep: `polycube`, `between`.
 
 mod angles;
+mod between;
 mod blend;
 mod boundary_layers;
+mod bridge;
 mod close;
 mod compress;
+mod develop;
 mod deviation;
 mod front;
 mod glue;
@@ -19,6 +23,7 @@ mod lens;
 mod lift;
 mod pairs;
 mod plug;
+mod polycube;
 mod residual;
 mod shell;
 mod solve;

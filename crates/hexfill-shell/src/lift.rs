@@ -18,6 +18,8 @@ pub(crate) struct Lifted {
     /// Vertices of the surface first, then new ones.
     pub n_vertices: u32,
     pub hexes: Vec<[u32; 8]>,
+    /// For each coarse hex the number of hexes before its own, and at last of all.
+    pub before: Vec<usize>,
     /// A first guess at the positions of all vertices, if those of the surface are known.
     pub points: Option<Vec<[f64; 3]>>,
 }
@@ -31,13 +33,14 @@ pub(crate) fn lift(
 ) -> Result<Lifted, MultiplicityClash> {
     let segments = segments(coarse, hexes)?;
     let mut lattice = Lattice::new(coarse, n_fine);
-    let mut fine = Vec::new();
+    let (mut fine, mut before) = (Vec::new(), Vec::with_capacity(hexes.len() + 1));
     let mut guess = points.map(<[_]>::to_vec);
     let at_fixed = |v: u32| points.and_then(|p| coarse.vertices.get(v as usize).map(|fine| p[fine.index()]));
     let corners = points.map(|_| springs(hexes, &segments, &at_fixed));
     for hex in hexes {
         let sizes = AXES.map(|[i, j]| segments[&pair(hex[i], hex[j])]);
         let [a, b, c] = sizes.map(|s| s as usize);
+        before.push(fine.len());
         let ids = lattice.points_of(hex, sizes);
         let at = |i: usize, j: usize, k: usize| ids[(k * (b + 1) + j) * (a + 1) + i];
         if let (Some(guess), Some(corners)) = (&mut guess, &corners) {
@@ -56,7 +59,8 @@ pub(crate) fn lift(
             }
         }
     }
-    Ok(Lifted { n_vertices: lattice.n_vertices, hexes: fine, points: guess })
+    before.push(fine.len());
+    Ok(Lifted { before, n_vertices: lattice.n_vertices, hexes: fine, points: guess })
 }
 
 /// Edges from corner 0 along x, y and z.
@@ -219,7 +223,8 @@ impl Lattice {
         let sizes = [a, b, c];
         let mut points = vec![u32::MAX; (a as usize + 1) * (b as usize + 1) * (c as usize + 1)];
         let index = |p: [u32; 3]| ((p[2] * (b + 1) + p[1]) * (a + 1) + p[0]) as usize;
-        let scaled = |corner: usize| -> [u32; 3] { std::array::from_fn(|k| u32::from(POSITIONS[corner][k]) * sizes[k]) };
+        let scaled =
+            |corner: usize| -> [u32; 3] { std::array::from_fn(|k| u32::from(POSITIONS[corner][k]) * sizes[k]) };
         let next_id = &mut self.n_vertices;
         let mut fresh = || {
             *next_id += 1;

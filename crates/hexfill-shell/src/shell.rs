@@ -1,10 +1,13 @@
 //! The engine: meshes of a surface by layers, by flips, and by flips where layers get no further.
 
 use crate::angles::wanted_hexes;
+use crate::between::between;
 use crate::compress::{Coarse, compress, uncompressed};
+use crate::develop::develop;
 use crate::deviation::{Deviation, deviation};
 use crate::front::Front;
 use crate::lift::lift;
+use crate::polycube::polycube;
 use crate::residual::fill_residual;
 use crate::solve::solve;
 use crate::stir::stir_front;
@@ -45,6 +48,8 @@ pub struct Shelled {
     pub cost: f32,
     /// Pillows under the surface.
     pub pillows: u32,
+    /// Where its hexes come from, and how many.
+    pub stages: Vec<(&'static str, usize)>,
 }
 
 /// What shelling brought.
@@ -80,6 +85,8 @@ const CONTINUED: usize = 4;
 const RESIDUALS: usize = 4;
 /// Rounds of stirring for one of them.
 const STIRRING: u32 = 20;
+/// Meshes that cost less give every edge what it wants.
+const PERFECT: f32 = 1e-3;
 /// Surfaces of more quads are not swept by flips without compression too.
 const MOST_FINE: usize = 20_000;
 
@@ -96,7 +103,33 @@ pub fn shell(
     let fine = uncompressed(surface, &wanted);
     let is_fine = coarse.surface.n_quads() == surface.n_quads();
     let mut shelling = Shelling { coarse_quads: coarse.surface.n_quads(), left: usize::MAX, ..Shelling::default() };
+    let cells = develop(surface, &wanted, points).and_then(|d| polycube(surface, &d));
     for &pillows in &options.pillows {
+        if let (0, Some(hexes)) = (pillows, &cells) {
+            let grid = vec![Glued::at_once("grid", hexes.clone())];
+            keep(&mut shelling.meshes, &fine, surface, points, pillows, grid, options);
+            shelling.left = 0;
+            if shelling.meshes.iter().any(|m| m.cost < PERFECT) {
+                // All edges bend by right angles: nothing is better than the cells of the grid.
+                break;
+            }
+        }
+        if surface.n_components() > 1 {
+            let Some(given) = points.filter(|_| surface.n_quads() <= MOST_FINE && ctx.stop().is_none()) else {
+                continue;
+            };
+            if let (0, Some(hexes)) = (pillows, between(surface, given)) {
+                let columns = vec![Glued::at_once("columns", hexes)];
+                keep(&mut shelling.meshes, &fine, surface, points, pillows, columns, options);
+                shelling.left = 0;
+            }
+            // Bridges and plugs join chords of all multiplicities, so they need the surface as it is.
+            if let Some(start) = Start::new(&fine, pillows).cut_open(given, surface, pillows) {
+                let meshes = start.complete(options, &mut shelling.left, ctx);
+                keep(&mut shelling.meshes, &fine, surface, points, pillows, meshes, options);
+            }
+            continue;
+        }
         let start = Start::new(&coarse, pillows);
         let mut meshes = start.complete(options, &mut shelling.left, ctx);
         let found = keep(&mut shelling.meshes, &coarse, surface, points, pillows, std::mem::take(&mut meshes), options);
@@ -107,7 +140,7 @@ pub fn shell(
             && let Some(given) = points
         {
             // Plugs join chords of all multiplicities, so they need the surface as it is.
-            if let Some(start) = Start::new(&fine, pillows).plugged(given, surface.genus()) {
+            if let Some(start) = Start::new(&fine, pillows).cut_open(given, surface, pillows) {
                 let meshes = start.complete(options, &mut shelling.left, ctx);
                 keep(&mut shelling.meshes, &fine, surface, points, pillows, meshes, options);
             }
@@ -121,11 +154,25 @@ pub fn shell(
 
 type Hexes = Vec<[u32; 8]>;
 
+/// Coarse hexes in the order they were glued, and how many there were after each stage.
+struct Glued {
+    hexes: Hexes,
+    stages: Vec<(&'static str, usize)>,
+}
+
+impl Glued {
+    fn at_once(stage: &'static str, hexes: Hexes) -> Self {
+        Self { stages: vec![(stage, hexes.len())], hexes }
+    }
+}
+
 /// Where sweeps start: the surface, perhaps behind pillows and cut by plugs.
 struct Start<'a> {
     coarse: &'a Coarse,
     void: Void,
     quads: Vec<[u32; 4]>,
+    /// Hexes of the pillows.
+    n_pillows: usize,
 }
 
 impl<'a> Start<'a> {
@@ -134,11 +181,13 @@ impl<'a> Start<'a> {
         for _ in 0..pillows {
             void.pillow();
         }
-        Self { coarse, void, quads: coarse.surface.quads().iter().map(|q| q.map(|v| v.0)).collect() }
+        let n_pillows = void.hexes.len();
+        Self { coarse, n_pillows, void, quads: coarse.surface.quads().iter().map(|q| q.map(|v| v.0)).collect() }
     }
 
-    /// This start with all handles cut; `None` if one is not. `points` are those of the surface, which is not compressed.
-    fn plugged(self, points: &[[f64; 3]], genus: u64) -> Option<Self> {
+    /// This start with all cavities joined to the outside and all handles cut; `None` if one is not. `points` are those of the surface,
+    /// which is not compressed.
+    fn cut_open(self, points: &[[f64; 3]], surface: &QuadSurface, pillows: u32) -> Option<Self> {
         // Pillows copy the surface vertex by vertex.
         let mut near = points.to_vec();
         let n = points.len();
@@ -149,23 +198,32 @@ impl<'a> Start<'a> {
         }
         near.extend(origin[n..].iter().map(|&v| points[v as usize]));
         let mut front = self.void.to_front(&self.quads)?;
-        for _ in 0..genus {
+        for _ in 1..surface.n_components() {
+            front = front.bridged(&mut near, pillows)?;
+        }
+        for _ in 0..surface.genus() {
             front = front.plug(&mut near)?;
         }
         Some(Self { void: self.void.after(&front)?, ..self })
     }
 
     /// Complete coarse meshes, by both engines.
-    fn complete(&self, options: &ShellOptions, left: &mut usize, ctx: &Context<'_>) -> Vec<Hexes> {
+    fn complete(&self, options: &ShellOptions, left: &mut usize, ctx: &Context<'_>) -> Vec<Glued> {
         let n = self.void.quads.len() as u64;
         let restarts = (RESTART_WORK / (n * n)).clamp(MIN_RESTARTS.min(options.restarts), options.restarts);
         let sweeps = solve(&self.void, restarts, ctx);
         let (complete, partial): (Vec<_>, Vec<_>) = sweeps.into_iter().partition(|s| s.is_complete());
-        let mut meshes: Vec<Hexes> = complete.into_iter().map(|s| s.void.hexes).collect();
+        let mut meshes: Vec<Glued> = complete
+            .into_iter()
+            .map(|s| {
+                let n = s.void.hexes.len();
+                self.glued(s.void.hexes, n, n)
+            })
+            .collect();
         if !meshes.is_empty() {
             *left = 0;
         }
-        let is_perfect = |h: &Hexes| deviation(self.coarse, h).is_some_and(|d| d.cost < 1e-3);
+        let is_perfect = |m: &Glued| deviation(self.coarse, &m.hexes).is_some_and(|d| d.cost < PERFECT);
         if meshes.iter().any(is_perfect) {
             return meshes;
         }
@@ -176,7 +234,7 @@ impl<'a> Start<'a> {
     }
 
     /// Complete coarse meshes by flips, from the start and from `others`.
-    fn by_flips(&self, options: &ShellOptions, others: &[Front], left: &mut usize, ctx: &Context<'_>) -> Vec<Hexes> {
+    fn by_flips(&self, options: &ShellOptions, others: &[Front], left: &mut usize, ctx: &Context<'_>) -> Vec<Glued> {
         let Some(front) = self.void.to_front(&self.quads) else { return Vec::new() };
         let Some(wanting) = self.void.to_wanting_front(&self.quads) else { return Vec::new() };
         // Every other sweep looks at lenses alone: it ends with fewer hexes.
@@ -184,36 +242,64 @@ impl<'a> Start<'a> {
             .map(|seed| (if seed % 2 == 0 { &wanting } else { &front }, seed / 2))
             .chain(others.iter().map(|f| (f, 0)))
             .collect();
-        let mut fronts: Vec<Front> = starts
+        // The fronts with the number of hexes that layers had glued, and that flips had.
+        let mut fronts: Vec<(usize, Front)> = starts
             .into_par_iter()
-            .map(|(front, seed)| {
+            .enumerate()
+            .map(|(i, (front, seed))| {
+                let by_layers = front.hexes().len();
                 let mut front = front.clone();
-                let quiet = Context { progress: None, ..*ctx };
-                sweep_front(&mut front, &SweepOptions { seed, ..SweepOptions::default() }, &quiet);
-                front
+                sweep_front(&mut front, &SweepOptions { seed, ..SweepOptions::default() }, &first_speaks(i, ctx));
+                (by_layers, front)
             })
             .collect();
-        fronts.sort_by_key(Front::n_quads);
-        let smallest = fronts.first().map_or(usize::MAX, Front::n_quads);
+        fronts.sort_by_key(|(_, front)| front.n_quads());
+        let smallest = fronts.first().map_or(usize::MAX, |(_, front)| front.n_quads());
         if smallest == 0 {
             *left = 0;
-            return fronts.into_iter().filter(|f| f.n_quads() == 0).map(|f| f.hexes().to_vec()).collect();
+            let complete = fronts.into_iter().filter(|(_, front)| front.n_quads() == 0);
+            return complete
+                .map(|(by_layers, front)| self.glued(front.hexes().to_vec(), by_layers, front.hexes().len()))
+                .collect();
         }
         // Nothing closed: the smallest residuals are filled.
         fronts.truncate(RESIDUALS);
-        let filled: Vec<Hexes> = fronts.par_iter().flat_map_iter(|front| close_residual(front, ctx)).collect();
+        let filled: Vec<Glued> = fronts
+            .par_iter()
+            .enumerate()
+            .flat_map_iter(|(i, (by_layers, front))| {
+                let filled = close_residual(front, &first_speaks(i, ctx));
+                filled.into_iter().map(|hexes| self.glued(hexes, *by_layers, front.hexes().len()))
+            })
+            .collect();
         *left = if filled.is_empty() { smallest.min(*left) } else { 0 };
         filled
     }
+
+    /// A complete mesh, given how many hexes there were after layers and after flips.
+    fn glued(&self, hexes: Hexes, after_layers: usize, after_flips: usize) -> Glued {
+        let stages = vec![
+            ("pillows", self.n_pillows),
+            ("plugs", self.void.hexes.len()),
+            ("layers", after_layers),
+            ("flips", after_flips),
+            ("residual", hexes.len()),
+        ];
+        Glued { hexes, stages }
+    }
+}
+
+/// Of several that work at once only the first reports progress.
+fn first_speaks<'c>(number: usize, ctx: &Context<'c>) -> Context<'c> {
+    if number == 0 { *ctx } else { Context { progress: None, ..*ctx } }
 }
 
 /// A residual filled as it is, and stirred until it closes.
 fn close_residual(front: &Front, ctx: &Context<'_>) -> Vec<Hexes> {
-    let quiet = Context { progress: None, ..*ctx };
     let mut stirred = front.clone();
     let options = SweepOptions { atlas: Some(Atlas::embedded()), ..SweepOptions::default() };
-    stir_front(&mut stirred, STIRRING, &options, &quiet);
-    [fill_residual(front, &quiet), fill_residual(&stirred, &quiet)].into_iter().flatten().collect()
+    stir_front(&mut stirred, STIRRING, &options, ctx);
+    [fill_residual(front, ctx), fill_residual(&stirred, ctx)].into_iter().flatten().collect()
 }
 
 /// Lifts those that no other beats in both cost and hexes; returns how many.
@@ -223,12 +309,12 @@ fn keep(
     surface: &QuadSurface,
     points: Option<&[[f64; 3]]>,
     pillows: u32,
-    meshes: Vec<Hexes>,
+    meshes: Vec<Glued>,
     options: &ShellOptions,
 ) -> usize {
     let before = kept.len();
-    let mut measured: Vec<(Deviation, Hexes)> =
-        meshes.into_iter().filter_map(|h| deviation(coarse, &h).map(|d| (d, h))).collect();
+    let mut measured: Vec<(Deviation, Glued)> =
+        meshes.into_iter().filter_map(|m| deviation(coarse, &m.hexes).map(|d| (d, m))).collect();
     // Stable: first come, first served among equals.
     measured.sort_by(|a, b| a.0.cost.total_cmp(&b.0.cost).then(a.0.fine_hexes.cmp(&b.0.fine_hexes)));
     let mut fewest = u64::MAX;
@@ -242,10 +328,19 @@ fn keep(
     let wanted = n.min(options.candidates);
     let chosen: Vec<usize> = (0..wanted).map(|i| if wanted == 1 { 0 } else { i * (n - 1) / (wanted - 1) }).collect();
     for i in chosen {
-        let (d, hexes) = &measured[i];
-        let Ok(lifted) = lift(coarse, surface.n_vertices() as u32, points, hexes) else { continue };
+        let (d, glued) = &measured[i];
+        let Ok(lifted) = lift(coarse, surface.n_vertices() as u32, points, &glued.hexes) else { continue };
         let Ok(mesh) = HexMesh::try_new(lifted.n_vertices as usize, &lifted.hexes) else { continue };
-        kept.push(Shelled { mesh, points: lifted.points, cost: d.cost, pillows });
+        let mut before = 0;
+        let mut stages = Vec::new();
+        for &(stage, n) in &glued.stages {
+            let after = lifted.before[n];
+            if after > before {
+                stages.push((stage, after - before));
+            }
+            before = after;
+        }
+        kept.push(Shelled { mesh, points: lifted.points, cost: d.cost, pillows, stages });
     }
     kept.len() - before
 }

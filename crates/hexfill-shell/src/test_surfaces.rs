@@ -87,3 +87,29 @@ pub(crate) fn voxels(size: [usize; 3], filled: impl Fn([usize; 3]) -> bool) -> O
 
 /// Angles / 90 degrees of edges.
 pub(crate) type Angles = std::collections::BTreeMap<(u32, u32), f32>;
+
+/// The boundary of the filled cells of a grid with the positions of its vertices.
+pub(crate) fn voxel_points(
+    size: [usize; 3],
+    filled: impl Fn([usize; 3]) -> bool,
+) -> Option<(QuadSurface, Vec<[f64; 3]>)> {
+    use hexfill_mesh::cube::{FACETS, POSITIONS};
+    let inside = |p: [i64; 3]| (0..3).all(|k| (0..size[k] as i64).contains(&p[k])) && filled(p.map(|x| x as usize));
+    // Vertices in the order of `voxel_surface`: by first use, cells with x fastest.
+    let mut seen = std::collections::BTreeSet::new();
+    let mut points = Vec::new();
+    for i in 0..size[0] * size[1] * size[2] {
+        let cell = [i % size[0], i / size[0] % size[1], i / size[0] / size[1]].map(|x| x as i64);
+        for (f, facet) in FACETS.iter().enumerate().filter(|_| inside(cell)) {
+            let mut beside = cell;
+            beside[f / 2] += if f % 2 == 0 { -1 } else { 1 };
+            for &k in facet.iter().filter(|_| !inside(beside)) {
+                let p = [0, 1, 2].map(|c| cell[c] + i64::from(POSITIONS[k][c]));
+                if seen.insert(p) {
+                    points.push(p.map(|x| x as f64));
+                }
+            }
+        }
+    }
+    Some((voxel_surface(size, filled).ok()?, points))
+}

@@ -31,6 +31,17 @@ pub enum Prefer {
     Quality,
 }
 
+/// Surfaces of at most so many quads have many fillings in the atlas.
+const SMALLEST: usize = 24;
+/// Cavities inward flips may look at where shelling found nothing valid.
+const MOST_CAVITIES: u64 = 100_000;
+
+/// Surfaces of more quads are shelled once.
+const MOST_RETRIED: usize = 1000;
+
+/// Surfaces of more quads are constructed only if nothing else filled them.
+const MOST_CONSTRUCTED: usize = 300;
+
 /// The place of a mesh in the order; smaller is better.
 type Rank = (u8, f64);
 
@@ -40,10 +51,7 @@ fn rank(filled: &Filled, placed: &Placed, prefer: Prefer) -> Rank {
         return (2, if placed.cells.is_empty() { f64::MAX } else { invalid as f64 });
     }
     let worst = placed.worst();
-    if worst < GOOD {
-        return (1, -worst);
-    }
-    (0, within(filled.mesh.n_hexes(), worst, prefer))
+    (u8::from(worst < GOOD), within(filled.mesh.n_hexes(), worst, prefer))
 }
 
 /// The order among good meshes.
@@ -78,32 +86,55 @@ pub(crate) fn fill_best(
     for filled in result.meshes.drain(..) {
         trial.consider(filled)?;
     }
-    // Where one component lies in another, shells do not sweep.
-    let shelled = if surface.n_components() == 1 { shelled(problem, options, ctx, &mut result)? } else { Vec::new() };
-    for filled in shelled {
+    for filled in shelled(problem, options, ctx, &mut result)? {
         if ctx.stop().is_some() && trial.best.is_some() {
             break;
         }
         trial.consider(filled)?;
     }
+    let by_shelling = trial.class() == Some(2) && surface.n_quads() <= MOST_RETRIED && options.layers.is_none();
+    if by_shelling && ctx.stop().is_none() && no_room(surface, boundary).is_none() {
+        // More room behind the surface, and other ties.
+        let mut again = options.clone();
+        again.shell.pillows = vec![2, 1];
+        again.shell.seeds *= 2;
+        let other = Context { seed: ctx.seed.wrapping_add(1), ..*ctx };
+        for filled in crate::fill::shelled(problem, &again, &other, &mut result)? {
+            if ctx.stop().is_some() || trial.class().is_some_and(|class| class < 2) {
+                break;
+            }
+            trial.consider(filled)?;
+        }
+    }
     let mut why_none = None;
     if options.strategy == Strategy::Auto && !trial.is_good() && ctx.stop().is_none() {
         why_none = no_room(surface, boundary);
         let has_valid = trial.class() == Some(1);
-        if small && why_none.is_none() && !has_valid {
-            search(surface, options, ctx, &mut result)?;
-            for filled in result.meshes.drain(..) {
-                trial.consider(filled)?;
+        if small && why_none.is_none() {
+            if !has_valid {
+                let cavities = options.inward_cavities.min(MOST_CAVITIES);
+                let inward = FillOptions { inward_cavities: cavities, ..options.clone() };
+                search(surface, &inward, ctx, &mut result)?;
+                for filled in result.meshes.drain(..) {
+                    trial.consider(filled)?;
+                }
             }
+            // The atlas knows many fillings of the smallest surfaces.
             let next = Next { problem, options, embed, boundary };
             if !trial.is_good()
+                && (!has_valid || surface.n_quads() <= SMALLEST)
                 && let Some((filled, _)) = next.more_fillings(&|| trial.limited(), ctx, &mut result.tried)?
             {
                 trial.consider(filled)?;
             }
         }
-        let certified = trial.class().is_some_and(|class| class < 2);
-        if (trial.best.is_none() || why_none.is_none() && !certified) && ctx.stop().is_none() {
+        // A construction has some 46 hexes a quad: where shelling left a few of its own invalid, it is tried on small surfaces only.
+        let worth_trying = match trial.class() {
+            None => true,
+            Some(2) => why_none.is_none() && surface.n_quads() <= MOST_CONSTRUCTED,
+            Some(_) => false,
+        };
+        if worth_trying && ctx.stop().is_none() {
             construct(problem, options, ctx, &mut result)?;
             for filled in result.meshes.drain(..) {
                 trial.consider(filled)?;
@@ -116,9 +147,7 @@ pub(crate) fn fill_best(
     let choice = match (why_none, seen.len()) {
         (Some(why), _) => Some(format!("no other mesh was tried, since none can be valid: {why}")),
         (None, 0 | 1) => None,
-        (None, _) => best.as_ref().map(|(_, filled, _)| {
-            format!("{}, the best of {}", words(filled), seen.join(", "))
-        }),
+        (None, _) => best.as_ref().map(|(_, filled, _)| format!("{}, the best of {}", words(filled), seen.join(", "))),
     };
     let stop = if result.stop == StopReason::Finished { ctx.stop().unwrap_or(result.stop) } else { result.stop };
     let choice = match layered {
@@ -163,7 +192,7 @@ impl<'a> Trial<'a> {
             (pillow.below, pillow.layer) = (-1.0, Layer::Always);
             let Some(pillowed) = split_stars(&filled.mesh, self.boundary, &pillow, self.ctx) else { return Ok(()) };
             verify(&self.problem.surface, &pillowed.mesh, filled.route)?;
-            filled = Filled { mesh: pillowed.mesh, route: filled.route, start: None };
+            filled = filled.changed("pillow", pillowed.mesh);
         }
         let placed = if filled.route == Route::Shelling {
             // Its surface vertices lie where the surface's do, so there is one way to place it.
@@ -210,7 +239,7 @@ impl<'a> Trial<'a> {
             return Ok(None);
         }
         verify(&self.problem.surface, &split.mesh, filled.route)?;
-        Ok(Some(Filled { mesh: split.mesh, route: filled.route, start: None }))
+        Ok(Some(filled.changed("split stars", split.mesh)))
     }
 }
 
@@ -247,7 +276,7 @@ impl Trial<'_> {
             });
         };
         verify(surface, &mesh, filled.route)?;
-        *filled = Filled { mesh, route: filled.route, start: None };
+        *filled = filled.changed("boundary layers", mesh);
         *placed = place_points(filled, self.boundary, points, placed.embedding.take());
         Ok(Some(format!("{} boundary layers", layers.count)))
     }

@@ -1,7 +1,7 @@
 //! `fill`: from a problem to verified meshes. Picks the strategy, and lets nothing out that the judge refused.
 
 use crate::choose::Prefer;
-use crate::components::{depths, fill_apart};
+use crate::components::{fill_apart, solids};
 use crate::geometry::boundary_points;
 use crate::problem::Problem;
 use crate::simplify::simplify_construction;
@@ -135,6 +135,20 @@ pub struct Filled {
     pub route: Route,
     /// Start positions that come with a construction or a shelling; absent for the other routes.
     pub start: Option<Vec<[f64; 3]>>,
+    /// What made how many of its hexes, where more than one step did.
+    pub stages: Vec<(&'static str, usize)>,
+}
+
+impl Filled {
+    /// This filling after one more step, which added the hexes that `mesh` has more.
+    pub(crate) fn changed(&self, step: &'static str, mesh: HexMesh) -> Self {
+        let mut stages = self.stages.clone();
+        if stages.is_empty() {
+            stages.push((self.route.words(), self.mesh.n_hexes()));
+        }
+        stages.push((step, mesh.n_hexes().saturating_sub(self.mesh.n_hexes())));
+        Self { mesh, route: self.route, start: None, stages }
+    }
 }
 
 /// All that a fill brought.
@@ -217,10 +231,9 @@ pub fn check_fillable(surface: &QuadSurface) -> Result<(), FillError> {
 /// [`FillError`].
 pub fn fill(problem: &Problem, options: &FillOptions, ctx: &Context<'_>) -> Result<FillResult, FillError> {
     check_fillable(&problem.surface)?;
-    let apart = problem.surface.n_components() > 1
-        && problem.points.as_ref().is_none_or(|points| depths(&problem.surface, points).iter().all(|&d| d == 0));
-    if apart && matches!(options.interior, InteriorFrom::BuiltIn) {
-        let result = fill_apart(problem, options, ctx)?;
+    let solids = solids(&problem.surface, problem.points.as_deref());
+    if solids.len() > 1 && matches!(options.interior, InteriorFrom::BuiltIn) {
+        let result = fill_apart(problem, &solids, options, ctx)?;
         result.meshes.iter().try_for_each(|m| verify(&problem.surface, &m.mesh, m.route))?;
         return Ok(result);
     }
@@ -248,15 +261,19 @@ pub(crate) fn fill_component(
     }
     let mut result = FillResult { meshes: Vec::new(), stop: StopReason::Finished, tried: Vec::new() };
     let by_atlas = matches!(options.strategy, Strategy::Auto | Strategy::Atlas);
-    let by_shelling = matches!(options.strategy, Strategy::Auto | Strategy::Shell) && surface.n_components() == 1;
+    let by_shelling = matches!(options.strategy, Strategy::Auto | Strategy::Shell);
     if small && by_atlas {
         // What the atlas does not hold is shelled before inward flips have their turn.
-        let cavities = if options.strategy == Strategy::Auto && options.count == 1 && !options.improve { 1 } else { options.inward_cavities };
+        let cavities = if options.strategy == Strategy::Auto && options.count == 1 && !options.improve {
+            1
+        } else {
+            options.inward_cavities
+        };
         search(surface, &FillOptions { inward_cavities: cavities, ..options.clone() }, ctx, &mut result)?;
     }
     if result.meshes.len() < options.count && by_shelling && ctx.stop().is_none() {
         for filled in shelled(problem, options, ctx, &mut result)? {
-            accept(surface, filled.mesh, filled.route, filled.start, options, &mut result)?;
+            accept(surface, filled, options, &mut result)?;
         }
     }
     if small && result.meshes.is_empty() && options.strategy == Strategy::Auto && ctx.stop().is_none() {
@@ -291,7 +308,12 @@ pub(crate) fn shelled(
     for shelled in made.meshes {
         if shelled.mesh.n_hexes() as u64 <= u64::from(options.max_hexes) {
             verify(&problem.surface, &shelled.mesh, Route::Shelling)?;
-            meshes.push(Filled { mesh: shelled.mesh, route: Route::Shelling, start: shelled.points });
+            meshes.push(Filled {
+                mesh: shelled.mesh,
+                route: Route::Shelling,
+                start: shelled.points,
+                stages: shelled.stages,
+            });
         }
     }
     Ok(meshes)
@@ -317,7 +339,7 @@ pub(crate) fn search(
     result.tried.push(format!("atlas of {} states, inward flips over {} cavities", atlas.n_states(), outcome.cavities));
     for filling in outcome.fillings {
         let route = if filling.glued == 0 { Route::Atlas } else { Route::InwardFlips };
-        accept(surface, filling.mesh, route, None, options, result)?;
+        accept(surface, Filled { mesh: filling.mesh, route, start: None, stages: Vec::new() }, options, result)?;
     }
     if options.strategy == Strategy::Atlas && result.meshes.len() < options.count && ctx.stop().is_none() {
         grow_towards(surface, options, ctx, result)?;
@@ -355,7 +377,12 @@ fn grow_towards(
                 let first = surface.n_vertices() as u32;
                 let (hexes, fresh) = ball.hexes_in(&boundary, mirrored, first);
                 let mesh = HexMesh::try_new((first + fresh) as usize, &hexes).expect("a ball's hexes glue properly");
-                accept(surface, mesh, Route::Growth, None, options, result)?;
+                accept(
+                    surface,
+                    Filled { mesh, route: Route::Growth, start: None, stages: Vec::new() },
+                    options,
+                    result,
+                )?;
             }
         }
         if result.meshes.len() >= options.count || growth.is_exhausted() || growth.level() >= options.max_hexes {
@@ -415,7 +442,12 @@ pub(crate) fn construct(
         }
         let (mesh, start) = simplify_construction(made.mesh, made.start, options, ctx, &mut result.tried);
         if mesh.n_hexes() as u64 <= u64::from(options.max_hexes) {
-            accept(&problem.surface, mesh, Route::Construction, start, options, result)?;
+            accept(
+                &problem.surface,
+                Filled { mesh, route: Route::Construction, start, stages: Vec::new() },
+                options,
+                result,
+            )?;
         }
         if result.meshes.len() >= options.count {
             break;
@@ -427,9 +459,7 @@ pub(crate) fn construct(
 /// Judges a mesh and keeps it, unless an isomorphic one is kept already or enough are.
 fn accept(
     surface: &QuadSurface,
-    mesh: HexMesh,
-    route: Route,
-    start: Option<Vec<[f64; 3]>>,
+    filled: Filled,
     options: &FillOptions,
     result: &mut FillResult,
 ) -> Result<(), FillError> {
@@ -437,13 +467,13 @@ fn accept(
         return Ok(());
     }
     if options.count > 1 {
-        let name = hex_signature(&mesh).ok();
+        let name = hex_signature(&filled.mesh).ok();
         if name.is_some() && result.meshes.iter().any(|m| hex_signature(&m.mesh).ok() == name) {
             return Ok(());
         }
     }
-    verify(surface, &mesh, route)?;
-    result.meshes.push(Filled { mesh, route, start });
+    verify(surface, &filled.mesh, filled.route)?;
+    result.meshes.push(filled);
     Ok(())
 }
 
@@ -481,6 +511,8 @@ pub struct FillReport {
     pub sheets: Option<usize>,
     /// How it was found.
     pub route: Route,
+    /// What made how many of the hexes, in the order of the work, where more than one step did.
+    pub stages: Vec<(&'static str, usize)>,
     /// Canonical signature of the mesh, for meshes of at most 10,000 hexes.
     pub signature: Option<String>,
     /// What was tried.
@@ -499,6 +531,7 @@ impl FillReport {
             interior_vertices: filled.mesh.n_interior_vertices(),
             sheets: (hexes <= 1_000_000).then(|| sheets(&filled.mesh).len()),
             route: filled.route,
+            stages: filled.stages.clone(),
             signature: (hexes <= 10_000).then(|| hex_signature(&filled.mesh).ok()).flatten(),
             tried: tried.to_vec(),
         }

@@ -105,7 +105,7 @@ pub fn place_best(
         let ways = placements(&filled.mesh, &problem.surface, boundary);
         let n = ways.len();
         all.extend(ways.into_iter().take(MOST_WAYS).map(|way| {
-            let turned = Filled { mesh: way.mesh, route: filled.route, start: None };
+            let turned = Filled { mesh: way.mesh, start: None, ..filled.clone() };
             (way.upper_bound, n, turned)
         }));
     }

@@ -29,8 +29,8 @@ pub use fill::{
 };
 pub use geometry::{GeometryReport, Placed, boundary_points, place, place_best, start_positions};
 pub use hexfill_mesh::{Context, Progress, StopReason};
+pub use hexfill_search::{Collapse, SimplifyOptions, SimplifyReport};
 pub use hexfill_shell::{BoundaryLayers, ShellOptions};
-pub use hexfill_search::{SimplifyOptions, SimplifyReport};
 pub use placed_fill::{PlaceOptions, PlacedFill, fill_placed};
 pub use problem::{Problem, ProblemError, is_named};
 pub use simplify::{SimplifiedData, SimplifyError, simplify};

@@ -5,6 +5,7 @@
 //! filling stays.
 
 use crate::choose::fill_best;
+use crate::components::solids;
 use crate::fill::{FillError, FillOptions, FillResult, Filled, Strategy, check_fillable, fill, search};
 use crate::geometry::{Placed, boundary_points, place, place_best, start_positions};
 use crate::problem::Problem;
@@ -59,7 +60,7 @@ pub fn fill_placed(
         && options.count == 1
         && !options.improve
         && !how.best
-        && problem.surface.n_components() == 1
+        && solids(&problem.surface, Some(&boundary)).len() == 1
     {
         check_fillable(&problem.surface)?;
         return fill_best(problem, options, how, embed, &boundary, ctx);

@@ -5,7 +5,9 @@ use hexfill_check::{Judged, Level, Parts, judge};
 use hexfill_construct::CellChoice;
 use hexfill_io::MeshData;
 use hexfill_mesh::{Context, HexMesh, HexMeshError, VertexId};
-use hexfill_search::{Atlas, SimplifyOptions, SimplifyReport, simplification_atlas, simplify as simplify_mesh};
+use hexfill_search::{
+    Atlas, Simplified, SimplifyOptions, SimplifyReport, collapse, simplification_atlas, simplify as simplify_mesh,
+};
 use std::time::Instant;
 
 /// Why a mesh cannot be simplified.
@@ -41,8 +43,8 @@ pub struct SimplifiedData {
     pub report: SimplifyReport,
 }
 
-/// Replaces balls of hexes by smaller fillings from the atlas (without one: [`simplification_atlas`]); the boundary stays as it
-/// is, its positions bit for bit. What comes back has passed levels 1 to 3 of the judge, its boundary being the input's; if
+/// Collapses closed sheets and columns and replaces balls of hexes by smaller fillings from the atlas (without one:
+/// [`simplification_atlas`]); the boundary stays as it is, its positions bit for bit. What comes back has passed levels 1 to 3 of the judge, its boundary being the input's; if
 /// nothing smaller was found it is the input. Embed again afterwards: new interior points only have means of positions.
 ///
 /// # Errors
@@ -55,7 +57,7 @@ pub fn simplify(
 ) -> Result<SimplifiedData, SimplifyError> {
     let mesh = HexMesh::try_new(data.vertex_count(), &data.hexes)?;
     judged(&mesh, None).map_err(|rules| SimplifyError::NotProper { rules })?;
-    let made = simplify_mesh(&mesh, atlas.unwrap_or_else(|| simplification_atlas()), options, ctx);
+    let made = simplified(&mesh, options, atlas, ctx);
     if made.report.after == made.report.before {
         return Ok(SimplifiedData { data: data.clone(), origin: made.origin, report: made.report });
     }
@@ -90,6 +92,14 @@ pub fn simplify(
     Ok(SimplifiedData { data: out, origin: made.origin, report: made.report })
 }
 
+/// The mesh made smaller. An atlas is grown only if there are balls to look up.
+fn simplified(mesh: &HexMesh, options: &SimplifyOptions, atlas: Option<&Atlas>, ctx: &Context<'_>) -> Simplified {
+    if options.balls == 0 {
+        return collapse(mesh, options.collapse, ctx);
+    }
+    simplify_mesh(mesh, atlas.unwrap_or_else(|| simplification_atlas()), options, ctx)
+}
+
 /// A construction made smaller as the options of a fill ask for; its boundary comes first and keeps its ids.
 /// The caller judges.
 pub(crate) fn simplify_construction(
@@ -103,11 +113,10 @@ pub(crate) fn simplify_construction(
     let left = ctx.deadline.map(|end| end.saturating_duration_since(Instant::now()));
     let share = if options.cells == CellChoice::Fewest { 0.9 } else { 0.5 };
     let limited = left.map_or(*ctx, |left| ctx.with_time_limit(left.mul_f64(share)));
-    let atlas = options.atlas.as_deref().unwrap_or_else(|| simplification_atlas());
-    let made = simplify_mesh(&mesh, atlas, how, &limited);
+    let made = simplified(&mesh, how, options.atlas.as_deref(), &limited);
+    let SimplifyReport { before, after, sheets, columns, balls, .. } = made.report;
     tried.push(format!(
-        "simplification from {} to {} hexes over {} balls",
-        made.report.before, made.report.after, made.report.balls
+        "simplification from {before} to {after} hexes over {balls} balls, {sheets} sheets and {columns} columns collapsed"
     ));
     let start = start.map(|points| carried_positions(&made.mesh, &made.origin, &points));
     (made.mesh, start)

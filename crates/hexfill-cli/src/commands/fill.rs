@@ -8,9 +8,9 @@ use anyhow::bail;
 use hexfill::construct::{CellChoice, GivenTets, TetgenTets};
 use hexfill::io::Format;
 use hexfill::search::{Atlas, GrowOptions};
-use hexfill::{BoundaryLayers, 
-    Context, FillOptions, FillReport, Filled, GeometryReport, InteriorFrom, PlaceOptions, Placed, Problem, StopReason,
-    Strategy,
+use hexfill::{
+    BoundaryLayers, Context, FillOptions, FillReport, Filled, GeometryReport, InteriorFrom, PlaceOptions, Placed,
+    Problem, StopReason, Strategy,
 };
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -379,6 +379,10 @@ fn say(output: &Output, args: &FillArgs, console: &Console) {
             r.sheets.map_or(String::new(), |n| format!(", {n} sheets")),
             r.route.words(),
         ));
+        if r.stages.len() > 1 {
+            let stages: Vec<String> = r.stages.iter().map(|(stage, n)| format!("{n} {stage}")).collect();
+            console.say(format!("hexes by step: {}", stages.join(", ")));
+        }
         console.say("connectivity: judged proper, boundary = surface (L1-L3)");
         match &mesh.geometry {
             Some(geometry) => {

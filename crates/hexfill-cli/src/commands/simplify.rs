@@ -7,10 +7,19 @@ use crate::files;
 use anyhow::{Context as _, bail};
 use hexfill::io::Format;
 use hexfill::search::Atlas;
-use hexfill::{Context, SimplifyOptions};
+use hexfill::{Collapse, Context, SimplifyOptions};
 use serde::Serialize;
 use std::path::PathBuf;
 use std::time::Instant;
+
+/// Which sheets and columns.
+#[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Which {
+    /// All that leave the quads of the boundary alone.
+    All,
+    /// Those without hexes at the boundary.
+    Inside,
+}
 
 /// Flags of `simplify`.
 #[derive(clap::Args)]
@@ -23,6 +32,11 @@ pub struct SimplifyArgs {
     /// How many balls of hexes to try [default: ten for each hex, at least 20,000; with --time-limit as many as it allows].
     #[arg(long, value_name = "N")]
     balls: Option<u64>,
+    /// Only collapse closed sheets and columns of hexes, without trying balls: takes a moment, for large meshes too. `inside`: none
+    /// with a hex at the boundary, which leaves coordinates possible where they are.
+    #[arg(long, value_name = "WHICH", num_args = 0..=1, require_equals = true, default_missing_value = "all")]
+    #[arg(conflicts_with_all = ["balls", "heat", "atlas"])]
+    collapse_only: Option<Which>,
     /// The chance, in thousandths, of taking one more hex (then another one, and so on) to leave a local minimum; it falls to
     /// nothing in the course of the work. 0: never more hexes.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=999))]
@@ -45,6 +59,10 @@ struct Output {
     hexes: usize,
     boundary_quads: usize,
     hexes_per_quad: f64,
+    /// Sheets and columns collapsed, and the hexes that went with them.
+    sheets: u64,
+    columns: u64,
+    collapsed_hexes: usize,
     balls: u64,
     looked_up: u64,
     /// Exchanges for fewer hexes, as many, more.
@@ -78,11 +96,16 @@ pub fn run(args: &SimplifyArgs, console: &Console, ctx: &Context<'_>) -> anyhow:
         bail!("{} has {others} cells that are no hexes; only pure hex meshes can be simplified", args.mesh);
     }
     let atlas = args.atlas.as_deref().map(Atlas::read_path).transpose()?;
-    let balls = args.balls.unwrap_or(match ctx.deadline {
-        Some(_) => u64::MAX,
-        None => default_balls(data.hexes.len()),
-    });
+    let balls = match (args.balls, ctx.deadline) {
+        _ if args.collapse_only.is_some() => 0,
+        (Some(balls), _) => balls,
+        (None, Some(_)) => u64::MAX,
+        (None, None) => default_balls(data.hexes.len()),
+    };
     let mut options = SimplifyOptions::default().with_balls(balls);
+    if args.collapse_only == Some(Which::Inside) {
+        options = options.with_collapse(Collapse::Inside);
+    }
     if let Some(heat) = args.heat {
         options = options.with_heat(heat);
     }
@@ -102,12 +125,12 @@ pub fn run(args: &SimplifyArgs, console: &Console, ctx: &Context<'_>) -> anyhow:
         "nothing smaller was found; the mesh is written as it was"
     };
     console.say(format!(
-        "{}: {} -> {} hexes ({per_quad:.1} per boundary quad), {} balls tried",
-        args.mesh, report.before, report.after, report.balls
+        "{}: {} -> {} hexes ({per_quad:.1} per boundary quad), {} sheets and {} columns collapsed, {} balls tried",
+        args.mesh, report.before, report.after, report.sheets, report.columns, report.balls
     ));
     console.say(how);
     if made.data.has_coordinates && report.after < report.before {
-        console.say("geometry: new vertices lie at means of their neighbours; run `hexfill embed` next");
+        console.say("geometry: vertices that stay were not moved, new ones lie at means of their neighbours; run `hexfill embed` next");
     }
     console.say(format!("written: {}", args.output));
     if console.json {
@@ -117,6 +140,9 @@ pub fn run(args: &SimplifyArgs, console: &Console, ctx: &Context<'_>) -> anyhow:
             hexes: report.after,
             boundary_quads: quads,
             hexes_per_quad: per_quad,
+            sheets: report.sheets,
+            columns: report.columns,
+            collapsed_hexes: report.collapsed,
             balls: report.balls,
             looked_up: report.looked_up,
             exchanges: report.exchanges,

@@ -237,6 +237,39 @@ impl LiveMesh {
         ids
     }
 
+    /// Presses the hexes `removed` flat: of each pair of their facets, what lies beyond the one is glued to what lies beyond the
+    /// other, and the first vertex of each of `merges` becomes the second. The collapse must be a legal one (`quotient.rs`).
+    pub(crate) fn merge(&mut self, removed: &[u32], facets: &[[u32; 2]], merges: &[[u32; 2]]) {
+        self.exchanges += 1;
+        // One pair after the other: where several quads become one, the outer two are left.
+        for &[f, g] in facets {
+            let (f, g) = (self.neighbour[f as usize], self.neighbour[g as usize]);
+            for (f, g) in [(f, g), (g, f)] {
+                if f != NONE {
+                    self.neighbour[f as usize] = g;
+                }
+            }
+        }
+        let mut order = removed.to_vec();
+        order.sort_unstable_by(|a, b| b.cmp(a));
+        for h in order {
+            self.unlink(h);
+            self.hexes[h as usize] = [NONE; 8];
+            self.free_hexes.push(h);
+        }
+        for &[from, to] in merges {
+            let hexes: Vec<u32> = self.hexes_at(from).collect();
+            for h in hexes {
+                self.unlink(h);
+                self.hexes[h as usize] = self.hexes[h as usize].map(|v| if v == from { to } else { v });
+                self.made[h as usize] = self.exchanges;
+                self.link(h);
+            }
+        }
+        self.free_vertices.extend(merges.iter().rev().map(|&[from, _]| from));
+        self.n_hexes -= removed.len();
+    }
+
     fn new_hex_slot(&mut self) -> u32 {
         self.hexes.push([NONE; 8]);
         self.made.push(0);

@@ -11,13 +11,21 @@
 //! and their offers are then placed in order, those that no longer fit being dropped. So the result is the same for any number
 //! of threads, unless the clock ends it.
 
+mod collapse;
+#[cfg(test)]
+mod collapse_tests;
+mod column_collapse;
 mod live;
 mod offer;
+mod quotient;
 mod region;
+mod sheet_collapse;
 
 use crate::atlas::Atlas;
 use crate::cavity::MAX_QUADS;
 use crate::grow::{GrowOptions, Growth};
+use collapse::collapse_live;
+pub use collapse::{Collapse, collapse};
 use hexfill_mesh::{Context, HexMesh, StopReason, VertexId};
 use live::{LiveMesh, NONE};
 use offer::{Offer, Random, Search, Worker};
@@ -40,11 +48,13 @@ pub struct SimplifyOptions {
     /// The chance, in thousandths, that a filling may have one more hex than the ball (then of another one, and so on) when the
     /// work begins. 0: never more hexes, only fewer or as many.
     pub heat: u32,
+    /// Which closed sheets and columns are [collapsed](collapse()), before the balls, between and after them.
+    pub collapse: Collapse,
 }
 
 impl Default for SimplifyOptions {
     fn default() -> Self {
-        Self { balls: 100_000, max_quads: 24, max_hexes: 100, heat: 970 }
+        Self { balls: 100_000, max_quads: 24, max_hexes: 100, heat: 970, collapse: Collapse::All }
     }
 }
 
@@ -62,6 +72,13 @@ impl SimplifyOptions {
         self.heat = heat.min(999);
         self
     }
+
+    /// The options with other collapses.
+    #[must_use]
+    pub fn with_collapse(mut self, collapse: Collapse) -> Self {
+        self.collapse = collapse;
+        self
+    }
 }
 
 /// What was done.
@@ -72,6 +89,12 @@ pub struct SimplifyReport {
     pub before: usize,
     /// Hexes of the result.
     pub after: usize,
+    /// Sheets collapsed.
+    pub sheets: u64,
+    /// Columns of hexes collapsed.
+    pub columns: u64,
+    /// Hexes that went with sheets and columns.
+    pub collapsed: usize,
     /// Balls grown.
     pub balls: u64,
     /// Boundaries looked up.
@@ -80,6 +103,22 @@ pub struct SimplifyReport {
     pub exchanges: [u64; 3],
     /// Why the work ended.
     pub stop: StopReason,
+}
+
+impl SimplifyReport {
+    fn new(hexes: usize) -> Self {
+        Self {
+            before: hexes,
+            after: hexes,
+            sheets: 0,
+            columns: 0,
+            collapsed: 0,
+            balls: 0,
+            looked_up: 0,
+            exchanges: [0; 3],
+            stop: StopReason::Finished,
+        }
+    }
 }
 
 /// A mesh with the same boundary and no more hexes.
@@ -107,31 +146,75 @@ pub fn simplification_atlas() -> &'static Atlas {
     })
 }
 
-/// Makes a mesh smaller without touching its boundary. The mesh must be proper (level 2 of the judge), else the result need
-/// not be. Never returns more hexes than it was given.
+impl Simplified {
+    /// Nothing done yet.
+    fn unchanged(mesh: &HexMesh) -> Self {
+        let origin = (0..mesh.n_vertices() as u32).map(|v| Some(VertexId(v))).collect();
+        Self { mesh: mesh.clone(), origin, report: SimplifyReport::new(mesh.n_hexes()) }
+    }
+
+    /// What `next` made of this mesh.
+    fn then(mut self, next: Self) -> Self {
+        self.origin = next.origin.iter().map(|o| o.and_then(|v| self.origin[v.index()])).collect();
+        self.mesh = next.mesh;
+        let (report, new) = (&mut self.report, next.report);
+        report.after = new.after;
+        report.sheets += new.sheets;
+        report.columns += new.columns;
+        report.collapsed += new.collapsed;
+        report.balls += new.balls;
+        report.looked_up += new.looked_up;
+        report.exchanges = [0, 1, 2].map(|i| report.exchanges[i] + new.exchanges[i]);
+        report.stop = new.stop;
+        self
+    }
+}
+
+/// Makes a mesh smaller without touching its boundary: [`collapse`](collapse()) if the options say so, then balls, then collapse
+/// again. The mesh must be proper (level 2 of the judge), else the result need not be. Never returns more hexes than it was given.
 ///
 /// Time: some tens of microseconds per boundary looked up, whatever the size of the mesh. Memory: about 250 bytes a hex and
 /// some 20 bytes a hex for each thread.
 pub fn simplify(mesh: &HexMesh, atlas: &Atlas, options: &SimplifyOptions, ctx: &Context<'_>) -> Simplified {
+    if options.collapse == Collapse::Nothing {
+        return exchange_balls(mesh, atlas, options, ctx);
+    }
+    let made = collapse(mesh, options.collapse, ctx);
+    let exchanged = exchange_balls(&made.mesh, atlas, options, ctx);
+    let (stop, is_other) = (exchanged.report.stop, exchanged.report.after < made.report.after);
+    let mut made = made.then(exchanged);
+    if is_other {
+        // No clock: it takes little time, and the rest may have used up all of it.
+        let last = collapse(&made.mesh, options.collapse, &Context { deadline: None, ..*ctx });
+        made = made.then(last);
+        made.report.stop = stop;
+    }
+    made
+}
+
+/// Thousandths of the work between two collapses.
+const COLLAPSE_EVERY: u64 = 50;
+
+/// The balls of [`simplify`], with collapses between them.
+fn exchange_balls(mesh: &HexMesh, atlas: &Atlas, options: &SimplifyOptions, ctx: &Context<'_>) -> Simplified {
     let mut live = LiveMesh::new(mesh);
-    let mut report = SimplifyReport {
-        before: mesh.n_hexes(),
-        after: mesh.n_hexes(),
-        balls: 0,
-        looked_up: 0,
-        exchanges: [0; 3],
-        stop: StopReason::Finished,
-    };
+    let mut report = SimplifyReport::new(mesh.n_hexes());
     let mut workers: Vec<Worker<'_>> = (0..rayon::current_num_threads()).map(|_| Worker::new(atlas)).collect();
     let clock = Clock { balls: options.balls, started: Instant::now(), deadline: ctx.deadline };
     let mut best = Snapshot::of(&live);
+    let (is_boundary, mut collapsed_at) = (mesh.boundary_vertices(), 0);
     while report.balls < options.balls && live.n_hexes() > 1 {
         if let Some(stop) = ctx.stop() {
             report.stop = stop;
             break;
         }
         let size = (live.n_hexes() as u64 / 16).clamp(4, 1024).min(options.balls - report.balls);
-        let search = search_of(options, clock.done(report.balls));
+        let done = clock.done(report.balls);
+        if done / COLLAPSE_EVERY > collapsed_at {
+            collapsed_at = done / COLLAPSE_EVERY;
+            collapse_live(&mut live, &is_boundary, options.collapse, &mut report, ctx);
+        }
+        let search = search_of(options, done);
         let seen = live.exchanges();
         for offer in offers(&live, &mut workers, report.balls, size, &search, ctx) {
             if live.are_untouched_since(&offer.removed, seen) && still_fits(&live, &offer, seen) {
@@ -155,8 +238,7 @@ pub fn simplify(mesh: &HexMesh, atlas: &Atlas, options: &SimplifyOptions, ctx: &
         best = Snapshot::of(&live);
     }
     if best.hexes.len() >= mesh.n_hexes() {
-        let origin = (0..mesh.n_vertices() as u32).map(|v| Some(VertexId(v))).collect();
-        return Simplified { mesh: mesh.clone(), origin, report };
+        return Simplified { report, ..Simplified::unchanged(mesh) };
     }
     let (mesh, origin) = best.settled(mesh);
     report.after = mesh.n_hexes();
