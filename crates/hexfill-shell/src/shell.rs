@@ -263,6 +263,8 @@ impl<'a> Start<'a> {
                 .collect();
         }
         // Nothing closed: the smallest residuals are filled.
+        // Handles that are left are no matter of flips.
+        fronts.retain(|(_, front)| is_sphere(front));
         fronts.truncate(RESIDUALS);
         let filled: Vec<Glued> = fronts
             .par_iter()
@@ -287,6 +289,10 @@ impl<'a> Start<'a> {
         ];
         Glued { hexes, stages }
     }
+}
+
+fn is_sphere(front: &Front) -> bool {
+    QuadSurface::try_new(front.n_vertices() as usize, &front.quads()).is_ok_and(|surface| surface.is_sphere())
 }
 
 /// Of several that work at once only the first reports progress.
