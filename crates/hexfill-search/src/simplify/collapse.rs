@@ -23,7 +23,7 @@ pub enum Collapse {
 /// Collapses closed sheets and closed columns of hexes until none can go, without touching the boundary. The mesh must be proper
 /// (level 2 of the judge), else the result need not be.
 ///
-/// Time: near linear in the hexes, some microseconds each.
+/// Time: some tens of microseconds a hex (2 s for a construction of 51,424 hexes), on one thread.
 pub fn collapse(mesh: &HexMesh, which: Collapse, ctx: &Context<'_>) -> Simplified {
     let mut live = LiveMesh::new(mesh);
     let mut report = SimplifyReport::new(mesh.n_hexes());

@@ -1,6 +1,7 @@
 //! `simplify`: fewer hexes, the same boundary.
 //!
-//! Balls of hexes grow in the mesh (`region.rs`); the boundary of each is looked up in an atlas, and a filling that has fewer
+//! Closed sheets and columns of hexes are pressed flat (`collapse.rs`: `sheet_collapse.rs`, `column_collapse.rs`; what is allowed:
+//! `quotient.rs`). Balls of hexes grow in the mesh (`region.rs`); the boundary of each is looked up in an atlas, and a filling that has fewer
 //! hexes and fits between the hexes outside takes the ball's place (`offer.rs`, `live.rs`). This is the search of Verhetsel,
 //! Pellerin and Remacle ("A 44-element mesh of Schneiders' pyramid", 2018; SIGGRAPH 2019), which brought 88 hexes down to 66
 //! and 44. To leave local minima, fillings of the same size are taken too, and by chance fillings of a few hexes more; that
@@ -181,15 +182,13 @@ pub fn simplify(mesh: &HexMesh, atlas: &Atlas, options: &SimplifyOptions, ctx: &
     }
     let made = collapse(mesh, options.collapse, ctx);
     let exchanged = exchange_balls(&made.mesh, atlas, options, ctx);
-    let (stop, is_other) = (exchanged.report.stop, exchanged.report.after < made.report.after);
-    let mut made = made.then(exchanged);
-    if is_other {
-        // No clock: it takes little time, and the rest may have used up all of it.
-        let last = collapse(&made.mesh, options.collapse, &Context { deadline: None, ..*ctx });
-        made = made.then(last);
-        made.report.stop = stop;
+    let is_other = exchanged.report.after < made.report.after;
+    let made = made.then(exchanged);
+    if !is_other || made.report.stop != StopReason::Finished {
+        return made;
     }
-    made
+    let last = collapse(&made.mesh, options.collapse, ctx);
+    made.then(last)
 }
 
 /// Thousandths of the work between two collapses.
