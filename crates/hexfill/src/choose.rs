@@ -34,10 +34,7 @@ pub enum Prefer {
 /// Surfaces of at most so many quads have many fillings in the atlas.
 const SMALLEST: usize = 24;
 /// Cavities inward flips may look at where shelling found nothing valid.
-const MOST_CAVITIES: u64 = 100_000;
-
-/// Surfaces of more quads are shelled once.
-const MOST_RETRIED: usize = 1000;
+const MOST_CAVITIES: u64 = 30_000;
 
 /// Surfaces of more quads are constructed only if nothing else filled them.
 const MOST_CONSTRUCTED: usize = 300;
@@ -92,20 +89,6 @@ pub(crate) fn fill_best(
         }
         trial.consider(filled)?;
     }
-    let by_shelling = trial.class() == Some(2) && surface.n_quads() <= MOST_RETRIED && options.layers.is_none();
-    if by_shelling && ctx.stop().is_none() && no_room(surface, boundary).is_none() {
-        // More room behind the surface, and other ties.
-        let mut again = options.clone();
-        again.shell.pillows = vec![2, 1];
-        again.shell.seeds *= 2;
-        let other = Context { seed: ctx.seed.wrapping_add(1), ..*ctx };
-        for filled in crate::fill::shelled(problem, &again, &other, &mut result)? {
-            if ctx.stop().is_some() || trial.class().is_some_and(|class| class < 2) {
-                break;
-            }
-            trial.consider(filled)?;
-        }
-    }
     let mut why_none = None;
     if options.strategy == Strategy::Auto && !trial.is_good() && ctx.stop().is_none() {
         why_none = no_room(surface, boundary);
@@ -122,7 +105,7 @@ pub(crate) fn fill_best(
             // The atlas knows many fillings of the smallest surfaces.
             let next = Next { problem, options, embed, boundary };
             if !trial.is_good()
-                && (!has_valid || surface.n_quads() <= SMALLEST)
+                && surface.n_quads() <= SMALLEST
                 && let Some((filled, _)) = next.more_fillings(&|| trial.limited(), ctx, &mut result.tried)?
             {
                 trial.consider(filled)?;

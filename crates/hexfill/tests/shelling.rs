@@ -1,0 +1,116 @@
+//! Shelling from the surface to certified coordinates: what users of real surfaces get.
+
+use hexfill::{BoundaryLayers, Context, FillOptions, PlaceOptions, Problem, Route, Strategy, fill_placed};
+use hexfill_mesh::QuadSurface;
+use hexfill_mesh::generate::voxel_surface;
+
+type Points = Vec<[f64; 3]>;
+
+/// Where the vertices of a voxel surface lie: they are numbered by first use, cell by cell, as `voxel_surface` does.
+fn voxel_points(size: [usize; 3], filled: &dyn Fn([usize; 3]) -> bool) -> Points {
+    let mut seen = std::collections::BTreeMap::new();
+    let mut points = Vec::new();
+    let inside = |p: [i64; 3]| {
+        (0..3).all(|k| p[k] >= 0 && (p[k] as usize) < size[k]) && filled(p.map(|x| x as usize))
+    };
+    for z in 0..size[2] as i64 {
+        for y in 0..size[1] as i64 {
+            for x in 0..size[0] as i64 {
+                for (side, facet) in hexfill_mesh::cube::FACETS.iter().enumerate() {
+                    let mut other = [x, y, z];
+                    other[side / 2] += if side % 2 == 0 { -1 } else { 1 };
+                    if !inside([x, y, z]) || inside(other) {
+                        continue;
+                    }
+                    for &corner in facet {
+                        let p = hexfill_mesh::cube::POSITIONS[corner].map(i64::from);
+                        let at = [x + p[0], y + p[1], z + p[2]];
+                        seen.entry(at).or_insert_with(|| points.push(at.map(|c| c as f64)));
+                    }
+                }
+            }
+        }
+    }
+    points
+}
+
+fn problem(surface: QuadSurface, points: Points) -> Problem {
+    let mut problem = Problem::from_surface("test", surface);
+    problem.points = Some(points);
+    problem
+}
+
+/// Hexes and certified worst scaled Jacobian of what `fill` makes.
+fn filled(problem: &Problem, options: &FillOptions) -> (usize, f64, Vec<[u32; 8]>) {
+    let mut how = PlaceOptions::default();
+    how.embed = Some(hexfill::embed::Options::default());
+    let made = fill_placed(problem, options, &how, &Context::default()).unwrap();
+    let (filled, placed) = &made.meshes[0];
+    assert_eq!(filled.route, Route::Shelling);
+    let placed = placed.as_ref().unwrap();
+    assert_eq!(&placed.points[..problem.surface.n_vertices()], &problem.points.as_ref().unwrap()[..]);
+    (filled.mesh.n_hexes(), if placed.is_certified() { placed.worst() } else { -1.0 }, filled.mesh.hexes_raw())
+}
+
+#[test]
+fn voxel_solids_are_their_voxels() {
+    type Solid = ([usize; 3], fn([usize; 3]) -> bool, usize);
+    let solids: [Solid; 7] = [
+        ([3, 3, 3], |_| true, 27),
+        ([4, 5, 6], |_| true, 120),
+        ([4, 4, 3], |[x, y, _]| x < 2 || y < 2, 36),
+        // A frame, a plate with two tunnels, a hollow box, stairs.
+        ([3, 3, 2], |[x, y, _]| x != 1 || y != 1, 16),
+        ([5, 3, 1], |[x, y, _]| y != 1 || x % 2 == 0, 13),
+        ([3, 3, 3], |p| p != [1, 1, 1], 26),
+        ([4, 3, 4], |[x, _, z]| z <= x, 30),
+    ];
+    for (size, is_filled, voxels) in solids {
+        let surface = voxel_surface(size, is_filled).unwrap();
+        let problem = problem(surface, voxel_points(size, &is_filled));
+        let (hexes, worst, _) = filled(&problem, &FillOptions::default());
+        assert_eq!(hexes, voxels, "{size:?}");
+        assert!(worst > 1.0 - 1e-9, "{size:?}: {worst}");
+    }
+}
+
+#[test]
+fn real_surfaces_get_a_few_good_hexes_a_quad_for_any_number_of_threads() {
+    for (name, most, least) in [("cubespikes", 2900, 0.7), ("bamboo_pen", 4640, 0.2)] {
+        let file = format!("{}/../../corpus/surfaces/{name}.obj", env!("CARGO_MANIFEST_DIR"));
+        let problem = Problem::load(&file, None).unwrap();
+        let mut meshes = Vec::new();
+        for threads in [1, 2] {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let (hexes, worst, mesh) = pool.install(|| filled(&problem, &FillOptions::default()));
+            assert!(hexes <= most && worst >= least, "{name}: {hexes} hexes, {worst}");
+            meshes.push(mesh);
+        }
+        assert!(meshes[0] == meshes[1], "{name}: the number of threads changes the mesh");
+    }
+}
+
+#[test]
+fn boundary_layers_lie_under_the_whole_surface() {
+    let surface = voxel_surface([2, 2, 2], |_| true).unwrap();
+    let problem = problem(surface, voxel_points([2, 2, 2], &|_| true));
+    let layers = BoundaryLayers { count: 3, height: Some(0.05), growth: 1.5 };
+    let options = FillOptions { layers: Some(layers), strategy: Strategy::Shell, ..FillOptions::default() };
+    let (hexes, worst, _) = filled(&problem, &options);
+    // Three layers and what is left of the pillow on 24 quads, and the 8 cubes.
+    assert_eq!(hexes, 4 * 24 + 8);
+    assert!(worst > 0.2, "{worst}");
+}
+
+#[test]
+fn a_cancelled_shelling_returns_nothing_or_a_mesh() {
+    let file = format!("{}/../../corpus/surfaces/cubespikes.obj", env!("CARGO_MANIFEST_DIR"));
+    let problem = Problem::load(&file, None).unwrap();
+    let cancel = std::sync::atomic::AtomicBool::new(true);
+    let ctx = Context { cancel: Some(&cancel), ..Context::default() };
+    let mut how = PlaceOptions::default();
+    how.embed = Some(hexfill::embed::Options::default());
+    let made = fill_placed(&problem, &FillOptions::default(), &how, &ctx).unwrap();
+    assert_eq!(made.stop, hexfill::StopReason::Cancelled);
+    assert!(made.meshes.is_empty());
+}
