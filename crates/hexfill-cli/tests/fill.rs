@@ -247,7 +247,7 @@ fn view_and_picture_are_written() {
 fn a_certificate_holds_for_its_mesh_and_for_no_other() {
     let dir = tempfile::tempdir().unwrap();
     let at = dir.path();
-    assert_eq!(hexfill(at, &["fill", ":octagonal-spindle", "-o", "m.vtk"]).0, 0);
+    assert_eq!(hexfill(at, &["fill", ":octagonal-spindle", "--prefer", "hexes", "-o", "m.vtk"]).0, 0);
     let surface = ["--surface", ":octagonal-spindle"];
     let check = |mesh: &str, more: &[&str]| hexfill(at, &[&["check", mesh], &surface[..], more].concat());
     let (code, out, err) = check("m.vtk", &["--certificate", "c.json", "--csv", "cells.csv"]);

@@ -3,6 +3,7 @@
 //! A hex is happiest with right angles, so an edge of angle a wants a / 90 degrees of them. 1 is a crease of a box, 2 is
 //! flat, 3 is the inner edge of an L.
 
+use hexfill_geometry::{cross, dot, sub};
 use hexfill_mesh::{Dart, QuadSurface};
 
 /// What a flat edge wants.
@@ -36,18 +37,6 @@ pub(crate) fn wanted_hexes(surface: &QuadSurface, points: Option<&[[f64; 3]]>) -
         }
     }
     wanted
-}
-
-fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 #[cfg(test)]

@@ -10,9 +10,7 @@ type Points = Vec<[f64; 3]>;
 fn voxel_points(size: [usize; 3], filled: &dyn Fn([usize; 3]) -> bool) -> Points {
     let mut seen = std::collections::BTreeMap::new();
     let mut points = Vec::new();
-    let inside = |p: [i64; 3]| {
-        (0..3).all(|k| p[k] >= 0 && (p[k] as usize) < size[k]) && filled(p.map(|x| x as usize))
-    };
+    let inside = |p: [i64; 3]| (0..3).all(|k| p[k] >= 0 && (p[k] as usize) < size[k]) && filled(p.map(|x| x as usize));
     for z in 0..size[2] as i64 {
         for y in 0..size[1] as i64 {
             for x in 0..size[0] as i64 {
