@@ -6,7 +6,7 @@
 
 use crate::choose::fill_best;
 use crate::components::solids;
-use crate::fill::{FillError, FillOptions, FillResult, Filled, Strategy, check_fillable, fill, search};
+use crate::fill::{FillError, FillOptions, FillResult, Filled, Strategy, check_fillable, fill};
 use crate::geometry::{Placed, boundary_points, place, place_best, start_positions};
 use crate::problem::Problem;
 use hexfill_construct::CellChoice;
@@ -37,12 +37,6 @@ pub struct PlacedFill {
     /// Why this mesh and no other, if there was a choice.
     pub choice: Option<String>,
 }
-
-/// Fillings that are looked for where the first has no valid coordinates.
-const MORE_FILLINGS: usize = 50;
-
-/// Starts for each of them: the first ones find most of what many find.
-const STARTS: u32 = 2;
 
 /// [`fill`], then [`place`]. Where a single mesh is asked for, by any strategy ([`Strategy::Auto`]), and the first does not embed, others are
 /// tried.
@@ -89,38 +83,6 @@ pub fn fill_placed(
     };
     let meshes = placed.into_iter().map(|(filled, placed)| (filled, Some(placed))).collect();
     Ok(PlacedFill { meshes, stop, tried, choice })
-}
-
-/// What to try after the first filling.
-pub(crate) struct Next<'a> {
-    pub problem: &'a Problem,
-    pub options: &'a FillOptions,
-    pub embed: &'a hexfill_embed::Options,
-    pub boundary: &'a [[f64; 3]],
-}
-
-impl Next<'_> {
-    /// A certified mesh from further fillings.
-    pub fn more_fillings<'c>(
-        &self,
-        limited: &dyn Fn() -> Context<'c>,
-        ctx: &Context<'_>,
-        tried: &mut Vec<String>,
-    ) -> Result<Option<(Filled, Placed)>, FillError> {
-        if ctx.stop().is_some() {
-            return Ok(None);
-        }
-        let more = FillOptions { count: MORE_FILLINGS, ..self.options.clone() };
-        let mut found = FillResult { meshes: Vec::new(), stop: StopReason::Finished, tried: Vec::new() };
-        search(&self.problem.surface, &more, ctx, &mut found)?;
-        tried.push(format!("{} fillings", found.meshes.len()));
-        let mut embed = *self.embed;
-        if embed.starts == 0 {
-            embed.starts = STARTS;
-        }
-        let best = place_best(&found.meshes, self.problem, self.boundary, &embed, &limited());
-        Ok(best.filter(|(_, placed)| placed.is_certified()))
-    }
 }
 
 /// Why no mesh of the surface has det J > 0, whatever its connectivity; `None` if no such reason is seen.

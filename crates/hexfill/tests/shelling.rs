@@ -112,3 +112,19 @@ fn a_cancelled_shelling_returns_nothing_or_a_mesh() {
     assert_eq!(made.stop, hexfill::StopReason::Cancelled);
     assert!(made.meshes.is_empty());
 }
+
+#[test]
+fn where_no_mesh_can_be_valid_it_is_said_what_was_tried() {
+    let mut problem = problem(voxel_surface([3, 3, 3], |_| true).unwrap(), voxel_points([3, 3, 3], &|_| true));
+    // A corner of the box onto the line between two of its neighbours: the quad is straight there, and no star is perfect.
+    let points = problem.points.as_mut().unwrap();
+    let corner = points.iter().position(|p| *p == [0.0; 3]).unwrap();
+    points[corner] = [0.5, 0.5, 0.0];
+    let mut how = PlaceOptions::default();
+    how.embed = Some(hexfill::embed::Options::default());
+    let made = fill_placed(&problem, &FillOptions::default(), &how, &Context::default()).unwrap();
+    assert!(!made.meshes[0].1.as_ref().unwrap().is_certified());
+    let choice = made.choice.unwrap();
+    assert!(choice.contains("the best of"), "{choice}");
+    assert!(choice.contains("no further mesh was tried, since none can be valid: quad"), "{choice}");
+}
