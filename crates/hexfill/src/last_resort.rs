@@ -8,7 +8,7 @@ use hexfill_mesh::Context;
 use std::time::{Duration, Instant};
 
 /// How long after the stop constructions may take, those of all components together.
-const GRACE: Duration = Duration::from_millis(1200);
+const GRACE: Duration = Duration::from_secs(1);
 
 /// With a deadline, engines that may find nothing leave this share of the time that is left to the construction and the embedding.
 const LEFT_TO_OTHERS: f64 = 0.25;
