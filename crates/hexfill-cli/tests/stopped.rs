@@ -125,7 +125,8 @@ fn killed_at_any_moment_the_file_is_whole_or_as_it_was() {
     let dir = tempfile::tempdir().unwrap();
     let at = dir.path();
     let surface = corpus("bamboo_pen.obj");
-    let args = ["fill", &surface, "--no-embed", "-o", "m.vtk"];
+    // A quick fill with a large file, so that some are killed while it is written.
+    let args = ["fill", &surface, "--strategy", "construct", "--no-embed", "-o", "m.vtk"];
     let start = Instant::now();
     assert_eq!(hexfill(at, &args).0, 0);
     let whole_run = start.elapsed();

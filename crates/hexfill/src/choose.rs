@@ -78,7 +78,7 @@ pub(crate) fn fill_best(
     ctx: &Context<'_>,
 ) -> Result<PlacedFill, FillError> {
     let result = FillResult { meshes: Vec::new(), stop: StopReason::Finished, tried: Vec::new() };
-    let early = leaving_time(options, ctx);
+    let early = leaving_time(problem, options, ctx);
     let mut trial = Trial { problem, options, boundary, how, ctx, early, embed, result, best: None, seen: Vec::new() };
     trial.look_up()?;
     trial.shell()?;

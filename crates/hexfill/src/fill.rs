@@ -264,7 +264,7 @@ pub(crate) fn fill_component(
         });
     }
     let mut result = FillResult { meshes: Vec::new(), stop: StopReason::Finished, tried: Vec::new() };
-    let early = leaving_time(options, ctx);
+    let early = leaving_time(problem, options, ctx);
     let by_atlas = matches!(options.strategy, Strategy::Auto | Strategy::Atlas);
     let by_shelling = matches!(options.strategy, Strategy::Auto | Strategy::Shell);
     if small && by_atlas {

@@ -10,14 +10,17 @@ use std::time::{Duration, Instant};
 /// How long after the stop constructions may take, those of all components together.
 const GRACE: Duration = Duration::from_secs(1);
 
-/// With a deadline, engines that may find nothing leave this share of the time that is left to the construction and the embedding.
+/// Constructions of surfaces with more quads may take longer. With a deadline, engines that may find nothing leave some time to them.
+const LARGE: usize = 2000;
+
+/// This share of the time that is left.
 const LEFT_TO_OTHERS: f64 = 0.25;
 
 /// The context of engines that may find nothing.
-pub(crate) fn leaving_time<'a>(options: &FillOptions, ctx: &Context<'a>) -> Context<'a> {
+pub(crate) fn leaving_time<'a>(problem: &Problem, options: &FillOptions, ctx: &Context<'a>) -> Context<'a> {
+    let may_construct = options.strategy == Strategy::Auto && !options.improve;
     match ctx.deadline {
-        // Growing and looking on until the deadline were asked for.
-        Some(end) if !options.improve && options.strategy != Strategy::Atlas => {
+        Some(end) if may_construct && problem.surface.n_quads() > LARGE => {
             let left = end.saturating_duration_since(Instant::now());
             ctx.with_time_limit(left.mul_f64(1.0 - LEFT_TO_OTHERS))
         }
