@@ -228,6 +228,9 @@ pub fn check_fillable(surface: &QuadSurface) -> Result<(), FillError> {
 /// Fills the surface of a problem. Every mesh returned has passed levels 1 to 3 of the judge, its boundary being the
 /// surface. An empty list means: none found within the bounds, which proves nothing.
 ///
+/// Told to stop by the context, it returns the best so far. If there is none, the surface is constructed if the strategy allows it and
+/// that takes no more than a second; else the list is empty.
+///
 /// # Errors
 /// [`FillError`].
 pub fn fill(problem: &Problem, options: &FillOptions, ctx: &Context<'_>) -> Result<FillResult, FillError> {
