@@ -16,7 +16,7 @@ pub struct Placed {
     pub points: Vec<[f64; 3]>,
     /// Per hex: its quality and whether det J > 0 was certified on all of it. Empty if nothing was judged.
     pub cells: Vec<CellQuality>,
-    /// What the embedding reports; absent if only start positions were asked for, or none could be made.
+    /// What the embedding reports; absent if only start positions were asked for, no time was left, or none could be made.
     pub embedding: Option<EmbedReport>,
     /// Why there are no useful positions of the interior: the boundary's own do not span a solid.
     pub refused: Option<String>,
@@ -182,7 +182,9 @@ fn positions(
     options: Option<&hexfill_embed::Options>,
     ctx: &Context<'_>,
 ) -> Result<(Vec<[f64; 3]>, Option<EmbedReport>), EmbedError> {
-    Ok(match options {
+    // Out of time, what is known stays as it is.
+    let is_late = ctx.stop().is_some() && filled.start.is_some();
+    Ok(match options.filter(|_| !is_late) {
         Some(options) => {
             let made = embed(&filled.mesh, boundary, filled.start.as_deref(), options, ctx)?;
             (made.points, Some(made.report))
