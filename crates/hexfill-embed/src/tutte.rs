@@ -4,8 +4,8 @@
 //! weights for restarts. The fixed vertices do not move.
 
 use crate::problem::{Problem, add_long, dot_long, fill};
-use crate::random::Random;
 use crate::vector::Vector;
+use hexfill_mesh::Random;
 use hexfill_mesh::cube::EDGES;
 
 /// Neighbours and weights of the free vertices, row by row.

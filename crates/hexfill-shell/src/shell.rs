@@ -8,7 +8,6 @@ use crate::deviation::{Deviation, deviation};
 use crate::front::Front;
 use crate::lift::lift;
 use crate::polycube::polycube;
-use crate::residual::fill_residual;
 use crate::solve::solve;
 use crate::stir::stir_front;
 use crate::sweep::{SweepOptions, sweep_front};
@@ -99,57 +98,120 @@ pub fn shell(
     ctx: &Context<'_>,
 ) -> Shelling {
     let wanted = wanted_hexes(surface, points);
-    let coarse = compress(surface, &wanted);
-    let fine = uncompressed(surface, &wanted);
-    let is_fine = coarse.surface.n_quads() == surface.n_quads();
-    let mut shelling = Shelling { coarse_quads: coarse.surface.n_quads(), left: usize::MAX, ..Shelling::default() };
+    let (coarse, fine) = (compress(surface, &wanted), uncompressed(surface, &wanted));
     let cells = develop(surface, &wanted, points).and_then(|d| polycube(surface, &d));
+    let shelling = Shelling { coarse_quads: coarse.surface.n_quads(), left: usize::MAX, ..Shelling::default() };
+    let mut keeper = Keeper { surface, points, coarse: &coarse, fine: &fine, options, shelling };
     for &pillows in &options.pillows {
         if let (0, Some(hexes)) = (pillows, &cells) {
-            let grid = vec![Glued::at_once("grid", hexes.clone())];
-            keep(&mut shelling.meshes, &fine, surface, points, pillows, grid, options);
-            shelling.left = 0;
-            if shelling.meshes.iter().any(|m| m.cost < PERFECT) {
+            keeper.keep(&fine, 0, vec![Glued::at_once("grid", hexes.clone())]);
+            keeper.shelling.left = 0;
+            if keeper.shelling.meshes.iter().any(|m| m.cost < PERFECT) {
                 // All edges bend by right angles: nothing is better than the cells of the grid.
                 break;
             }
         }
         if surface.n_components() > 1 {
-            let Some(given) = points.filter(|_| surface.n_quads() <= MOST_FINE && ctx.stop().is_none()) else {
-                continue;
-            };
-            if let (0, Some(hexes)) = (pillows, between(surface, given)) {
-                let columns = vec![Glued::at_once("columns", hexes)];
-                keep(&mut shelling.meshes, &fine, surface, points, pillows, columns, options);
-                shelling.left = 0;
-            }
-            // Bridges and plugs join chords of all multiplicities, so they need the surface as it is.
-            if let Some(start) = Start::new(&fine, pillows).cut_open(given, surface, pillows) {
-                let meshes = start.complete(options, &mut shelling.left, ctx);
-                keep(&mut shelling.meshes, &fine, surface, points, pillows, meshes, options);
-            }
-            continue;
-        }
-        let start = Start::new(&coarse, pillows);
-        let mut meshes = start.complete(options, &mut shelling.left, ctx);
-        let found = keep(&mut shelling.meshes, &coarse, surface, points, pillows, std::mem::take(&mut meshes), options);
-        if surface.n_quads() > MOST_FINE || ctx.stop().is_some() {
-            continue;
-        }
-        if surface.genus() > 0
-            && let Some(given) = points
-        {
-            // Plugs join chords of all multiplicities, so they need the surface as it is.
-            if let Some(start) = Start::new(&fine, pillows).cut_open(given, surface, pillows) {
-                let meshes = start.complete(options, &mut shelling.left, ctx);
-                keep(&mut shelling.meshes, &fine, surface, points, pillows, meshes, options);
-            }
-        } else if found == 0 && !is_fine {
-            let meshes = Start::new(&fine, pillows).by_flips(options, &[], &mut shelling.left, ctx);
-            keep(&mut shelling.meshes, &fine, surface, points, pillows, meshes, options);
+            keeper.sweep_several(pillows, ctx);
+        } else {
+            keeper.sweep_one(pillows, ctx);
         }
     }
-    shelling
+    keeper.shelling
+}
+
+/// The surface in both sizes, and the meshes that are worth keeping.
+struct Keeper<'a> {
+    surface: &'a QuadSurface,
+    points: Option<&'a [[f64; 3]]>,
+    coarse: &'a Coarse,
+    fine: &'a Coarse,
+    options: &'a ShellOptions,
+    shelling: Shelling,
+}
+
+impl Keeper<'_> {
+    /// Sweeps a surface of one component: compressed, and as it is where handles are cut or compression left nothing that closes.
+    fn sweep_one(&mut self, pillows: u32, ctx: &Context<'_>) {
+        let meshes = Start::new(self.coarse, pillows).complete(self.options, &mut self.shelling.left, ctx);
+        let found = self.keep(self.coarse, pillows, meshes);
+        if self.surface.n_quads() > MOST_FINE || ctx.stop().is_some() {
+            return;
+        }
+        let is_compressed = self.coarse.surface.n_quads() < self.surface.n_quads();
+        match self.points {
+            Some(given) if self.surface.genus() > 0 => self.sweep_cut_open(given, pillows, ctx),
+            _ if found == 0 && is_compressed => {
+                let start = Start::new(self.fine, pillows);
+                let meshes = start.by_flips(self.options, &[], &mut self.shelling.left, ctx);
+                self.keep(self.fine, pillows, meshes);
+            }
+            _ => (),
+        }
+    }
+
+    /// Fills between the components of a surface: by columns, and swept once bridges join the components.
+    fn sweep_several(&mut self, pillows: u32, ctx: &Context<'_>) {
+        let Some(given) = self.points.filter(|_| self.surface.n_quads() <= MOST_FINE && ctx.stop().is_none()) else {
+            return;
+        };
+        if pillows == 0
+            && let Some(hexes) = between(self.surface, given)
+        {
+            self.keep(self.fine, 0, vec![Glued::at_once("columns", hexes)]);
+            self.shelling.left = 0;
+        }
+        self.sweep_cut_open(given, pillows, ctx);
+    }
+
+    /// Sweeps the surface with its components joined and its handles cut. Bridges and plugs join chords of all multiplicities, so they
+    /// need the surface as it is.
+    fn sweep_cut_open(&mut self, given: &[[f64; 3]], pillows: u32, ctx: &Context<'_>) {
+        if let Some(start) = Start::new(self.fine, pillows).cut_open(given, self.surface, pillows) {
+            let meshes = start.complete(self.options, &mut self.shelling.left, ctx);
+            self.keep(self.fine, pillows, meshes);
+        }
+    }
+
+    /// Lifts those meshes of `coarse` that no other beats in both cost and hexes, and keeps them; returns how many.
+    fn keep(&mut self, coarse: &Coarse, pillows: u32, meshes: Vec<Glued>) -> usize {
+        let before = self.shelling.meshes.len();
+        let mut measured: Vec<(Deviation, Glued)> =
+            meshes.into_iter().filter_map(|m| deviation(coarse, &m.hexes).map(|d| (d, m))).collect();
+        // Stable: first come, first served among equals.
+        measured.sort_by(|a, b| a.0.cost.total_cmp(&b.0.cost).then(a.0.fine_hexes.cmp(&b.0.fine_hexes)));
+        let mut fewest = u64::MAX;
+        measured.retain(|(d, _)| {
+            let keep = d.fine_hexes < fewest;
+            fewest = fewest.min(d.fine_hexes);
+            keep
+        });
+        // The ends of the front and what lies evenly between them.
+        let n = measured.len();
+        let wanted = n.min(self.options.candidates);
+        for i in (0..wanted).map(|i| if wanted == 1 { 0 } else { i * (n - 1) / (wanted - 1) }) {
+            let (d, glued) = &measured[i];
+            let lifted = self.lifted(coarse, glued, d.cost, pillows);
+            self.shelling.meshes.extend(lifted);
+        }
+        self.shelling.meshes.len() - before
+    }
+
+    /// The mesh of the surface that a coarse mesh becomes; `None` if it does not lift.
+    fn lifted(&self, coarse: &Coarse, glued: &Glued, cost: f32, pillows: u32) -> Option<Shelled> {
+        let lifted = lift(coarse, self.surface.n_vertices() as u32, self.points, &glued.hexes).ok()?;
+        let mesh = HexMesh::try_new(lifted.n_vertices as usize, &lifted.hexes).ok()?;
+        let mut before = 0;
+        let mut stages = Vec::new();
+        for &(stage, n) in &glued.stages {
+            let after = lifted.before[n];
+            if after > before {
+                stages.push((stage, after - before));
+            }
+            before = after;
+        }
+        Some(Shelled { mesh, points: lifted.points, cost, pillows, stages })
+    }
 }
 
 type Hexes = Vec<[u32; 8]>;
@@ -210,7 +272,7 @@ impl<'a> Start<'a> {
     /// Complete coarse meshes, by both engines.
     fn complete(&self, options: &ShellOptions, left: &mut usize, ctx: &Context<'_>) -> Vec<Glued> {
         let n = self.void.quads.len() as u64;
-        let restarts = (RESTART_WORK / (n * n)).clamp(MIN_RESTARTS.min(options.restarts), options.restarts);
+        let restarts = (RESTART_WORK / (n * n).max(1)).clamp(MIN_RESTARTS.min(options.restarts), options.restarts);
         let sweeps = solve(&self.void, restarts, ctx);
         let (complete, partial): (Vec<_>, Vec<_>) = sweeps.into_iter().partition(|s| s.is_complete());
         let mut meshes: Vec<Glued> = complete
@@ -305,48 +367,5 @@ fn close_residual(front: &Front, ctx: &Context<'_>) -> Vec<Hexes> {
     let mut stirred = front.clone();
     let options = SweepOptions { atlas: Some(Atlas::embedded()), ..SweepOptions::default() };
     stir_front(&mut stirred, STIRRING, &options, ctx);
-    [fill_residual(front, ctx), fill_residual(&stirred, ctx)].into_iter().flatten().collect()
-}
-
-/// Lifts those that no other beats in both cost and hexes; returns how many.
-fn keep(
-    kept: &mut Vec<Shelled>,
-    coarse: &Coarse,
-    surface: &QuadSurface,
-    points: Option<&[[f64; 3]]>,
-    pillows: u32,
-    meshes: Vec<Glued>,
-    options: &ShellOptions,
-) -> usize {
-    let before = kept.len();
-    let mut measured: Vec<(Deviation, Glued)> =
-        meshes.into_iter().filter_map(|m| deviation(coarse, &m.hexes).map(|d| (d, m))).collect();
-    // Stable: first come, first served among equals.
-    measured.sort_by(|a, b| a.0.cost.total_cmp(&b.0.cost).then(a.0.fine_hexes.cmp(&b.0.fine_hexes)));
-    let mut fewest = u64::MAX;
-    measured.retain(|(d, _)| {
-        let keep = d.fine_hexes < fewest;
-        fewest = fewest.min(d.fine_hexes);
-        keep
-    });
-    // The ends of the front and what lies evenly between them.
-    let n = measured.len();
-    let wanted = n.min(options.candidates);
-    let chosen: Vec<usize> = (0..wanted).map(|i| if wanted == 1 { 0 } else { i * (n - 1) / (wanted - 1) }).collect();
-    for i in chosen {
-        let (d, glued) = &measured[i];
-        let Ok(lifted) = lift(coarse, surface.n_vertices() as u32, points, &glued.hexes) else { continue };
-        let Ok(mesh) = HexMesh::try_new(lifted.n_vertices as usize, &lifted.hexes) else { continue };
-        let mut before = 0;
-        let mut stages = Vec::new();
-        for &(stage, n) in &glued.stages {
-            let after = lifted.before[n];
-            if after > before {
-                stages.push((stage, after - before));
-            }
-            before = after;
-        }
-        kept.push(Shelled { mesh, points: lifted.points, cost: d.cost, pillows, stages });
-    }
-    kept.len() - before
+    [front.closed(ctx), stirred.closed(ctx)].into_iter().flatten().map(|state| state.hexes().to_vec()).collect()
 }

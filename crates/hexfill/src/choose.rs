@@ -4,9 +4,10 @@
 //! The order of meshes: certified ones first, then those whose worst scaled Jacobian is at least [`GOOD`], then fewest
 //! hexes for their quality ([`Prefer`]).
 
-use crate::fill::{FillError, FillOptions, Filled, Route, Strategy, construct, search, shelled, verify};
-use crate::geometry::{Placed, place, place_as_it_is, place_points};
-use crate::placed_fill::{Next, PlaceOptions, PlacedFill, no_room};
+use crate::fill::{FillError, FillOptions, FillResult, Filled, Route, Strategy, construct, search, shelled, verify};
+use crate::geometry::{Placed, place, place_as_it_is, place_best, place_points};
+use crate::no_room::no_room;
+use crate::placed_fill::{PlaceOptions, PlacedFill};
 use crate::problem::Problem;
 use hexfill_embed::quick_star_bound;
 use hexfill_mesh::{Context, StopReason};
@@ -33,6 +34,10 @@ pub enum Prefer {
 
 /// Surfaces of at most so many quads have many fillings in the atlas.
 const SMALLEST: usize = 24;
+/// Fillings of them that are looked for where the first has no valid coordinates.
+const MORE_FILLINGS: usize = 50;
+/// Starts for each of these: the first ones find most of what many find.
+const STARTS: u32 = 2;
 /// Cavities inward flips may look at where shelling found nothing valid.
 const MOST_CAVITIES: u64 = 30_000;
 
@@ -72,73 +77,14 @@ pub(crate) fn fill_best(
     boundary: &[[f64; 3]],
     ctx: &Context<'_>,
 ) -> Result<PlacedFill, FillError> {
-    let surface = &problem.surface;
-    let mut result = crate::fill::FillResult { meshes: Vec::new(), stop: StopReason::Finished, tried: Vec::new() };
-    let small = surface.is_sphere() && surface.n_quads() <= MAX_QUADS;
-    let mut trial = Trial { problem, options, boundary, how, ctx, embed, best: None, seen: Vec::new() };
-    if small && options.strategy == Strategy::Auto {
-        // One cavity: the surface itself.
-        search(surface, &FillOptions { inward_cavities: 1, ..options.clone() }, ctx, &mut result)?;
-    }
-    for filled in result.meshes.drain(..) {
-        trial.consider(filled)?;
-    }
-    for filled in shelled(problem, options, ctx, &mut result)? {
-        if ctx.stop().is_some() && trial.best.is_some() {
-            break;
-        }
-        trial.consider(filled)?;
-    }
-    let mut why_none = None;
-    if options.strategy == Strategy::Auto && !trial.is_good() && ctx.stop().is_none() {
-        why_none = no_room(surface, boundary);
-        let has_valid = trial.class() == Some(1);
-        if small && why_none.is_none() {
-            if !has_valid {
-                let cavities = options.inward_cavities.min(MOST_CAVITIES);
-                let inward = FillOptions { inward_cavities: cavities, ..options.clone() };
-                search(surface, &inward, ctx, &mut result)?;
-                for filled in result.meshes.drain(..) {
-                    trial.consider(filled)?;
-                }
-            }
-            // The atlas knows many fillings of the smallest surfaces.
-            let next = Next { problem, options, embed, boundary };
-            if !trial.is_good()
-                && surface.n_quads() <= SMALLEST
-                && let Some((filled, _)) = next.more_fillings(&|| trial.limited(), ctx, &mut result.tried)?
-            {
-                trial.consider(filled)?;
-            }
-        }
-        // A construction has some 46 hexes a quad: where shelling left a few of its own invalid, it is tried on small surfaces only.
-        let worth_trying = match trial.class() {
-            None => true,
-            Some(2) => why_none.is_none() && surface.n_quads() <= MOST_CONSTRUCTED,
-            Some(_) => false,
-        };
-        if worth_trying && ctx.stop().is_none() {
-            construct(problem, options, ctx, &mut result)?;
-            for filled in result.meshes.drain(..) {
-                trial.consider(filled)?;
-            }
-        }
-    }
+    let result = FillResult { meshes: Vec::new(), stop: StopReason::Finished, tried: Vec::new() };
+    let mut trial = Trial { problem, options, boundary, how, ctx, embed, result, best: None, seen: Vec::new() };
+    trial.look_up()?;
+    trial.shell()?;
+    let why_none = trial.go_on()?;
     trial.polish();
     let layered = trial.cut_layers()?;
-    let Trial { best, seen, .. } = trial;
-    let choice = match (why_none, seen.len()) {
-        (Some(why), _) => Some(format!("no other mesh was tried, since none can be valid: {why}")),
-        (None, 0 | 1) => None,
-        (None, _) => best.as_ref().map(|(_, filled, _)| format!("{}, the best of {}", words(filled), seen.join(", "))),
-    };
-    let stop = if result.stop == StopReason::Finished { ctx.stop().unwrap_or(result.stop) } else { result.stop };
-    let choice = match layered {
-        Some(layers) => Some(choice.map_or(layers.clone(), |c| format!("{c}; {layers}"))),
-        None => choice,
-    };
-    let meshes = best.into_iter().map(|(_, filled, placed)| (filled, Some(placed))).collect();
-    Ok(PlacedFill { meshes, stop, tried: result.tried, choice })
+    Ok(trial.finish(why_none, layered))
 }
 
 /// The best mesh so far and what was tried.
@@ -149,11 +95,89 @@ struct Trial<'a> {
     how: &'a PlaceOptions,
     ctx: &'a Context<'a>,
     embed: &'a hexfill_embed::Options,
+    /// What the engines say; their meshes stay here until they are considered.
+    result: FillResult,
     best: Option<(Rank, Filled, Placed)>,
+    /// The meshes considered, in words.
     seen: Vec<String>,
 }
 
 impl<'a> Trial<'a> {
+    /// Looks a small sphere up in the atlas.
+    fn look_up(&mut self) -> Result<(), FillError> {
+        if self.is_small() && self.options.strategy == Strategy::Auto {
+            // One cavity: the surface itself.
+            self.flip_inward(1)?;
+        }
+        Ok(())
+    }
+
+    /// Shells the surface.
+    fn shell(&mut self) -> Result<(), FillError> {
+        for filled in shelled(self.problem, self.options, self.ctx, &mut self.result)? {
+            if self.ctx.stop().is_some() && self.best.is_some() {
+                break;
+            }
+            self.consider(filled)?;
+        }
+        Ok(())
+    }
+
+    /// Asks the other engines where no mesh is good yet. Says why none can be valid, if that is known.
+    fn go_on(&mut self) -> Result<Option<String>, FillError> {
+        if self.options.strategy != Strategy::Auto || self.is_good() || self.ctx.stop().is_some() {
+            return Ok(None);
+        }
+        let why_none = no_room(&self.problem.surface, self.boundary);
+        if self.is_small() && why_none.is_none() {
+            if self.class() != Some(1) {
+                self.flip_inward(self.options.inward_cavities.min(MOST_CAVITIES))?;
+            }
+            self.look_at_more_fillings()?;
+        }
+        // A construction has some 46 hexes a quad: where shelling left a few of its own invalid, it is tried on small surfaces only.
+        let worth_trying = match self.class() {
+            None => true,
+            Some(2) => why_none.is_none() && self.problem.surface.n_quads() <= MOST_CONSTRUCTED,
+            Some(_) => false,
+        };
+        if worth_trying && self.ctx.stop().is_none() {
+            construct(self.problem, self.options, self.ctx, &mut self.result)?;
+            self.consider_found()?;
+        }
+        Ok(why_none)
+    }
+
+    /// Fills by inward flips over so many cavities.
+    fn flip_inward(&mut self, inward_cavities: u64) -> Result<(), FillError> {
+        let inward = FillOptions { inward_cavities, ..self.options.clone() };
+        search(&self.problem.surface, &inward, self.ctx, &mut self.result)?;
+        self.consider_found()
+    }
+
+    /// Looks at many fillings of one of the smallest surfaces, which the atlas knows.
+    fn look_at_more_fillings(&mut self) -> Result<(), FillError> {
+        if self.is_good() || self.problem.surface.n_quads() > SMALLEST || self.ctx.stop().is_some() {
+            return Ok(());
+        }
+        let more = FillOptions { count: MORE_FILLINGS, ..self.options.clone() };
+        let mut found = FillResult { meshes: Vec::new(), stop: StopReason::Finished, tried: Vec::new() };
+        search(&self.problem.surface, &more, self.ctx, &mut found)?;
+        self.result.tried.push(format!("{} fillings", found.meshes.len()));
+        let mut embed = *self.embed;
+        if embed.starts == 0 {
+            embed.starts = STARTS;
+        }
+        match place_best(&found.meshes, self.problem, self.boundary, &embed, &self.limited()) {
+            Some((filled, placed)) if placed.is_certified() => self.consider(filled),
+            _ => Ok(()),
+        }
+    }
+
+    fn is_small(&self) -> bool {
+        self.problem.surface.is_sphere() && self.problem.surface.n_quads() <= MAX_QUADS
+    }
+
     fn limited(&self) -> Context<'a> {
         self.how.limit.map_or(*self.ctx, |limit| self.ctx.with_time_limit(limit))
     }
@@ -164,6 +188,11 @@ impl<'a> Trial<'a> {
 
     fn is_good(&self) -> bool {
         self.class() == Some(0)
+    }
+
+    /// Considers the meshes that an engine found.
+    fn consider_found(&mut self) -> Result<(), FillError> {
+        std::mem::take(&mut self.result.meshes).into_iter().try_for_each(|filled| self.consider(filled))
     }
 
     /// Embeds a mesh and keeps it if it is the best.
@@ -224,9 +253,7 @@ impl<'a> Trial<'a> {
         verify(&self.problem.surface, &split.mesh, filled.route)?;
         Ok(Some(filled.changed("split stars", split.mesh)))
     }
-}
 
-impl Trial<'_> {
     /// Raises the best mesh further, if it was only screened.
     fn polish(&mut self) {
         let limited = self.limited();
@@ -244,9 +271,7 @@ impl Trial<'_> {
             *placed = polished;
         }
     }
-}
 
-impl Trial<'_> {
     /// Cuts the pillow of the best mesh into the layers asked for, and says so.
     fn cut_layers(&mut self) -> Result<Option<String>, FillError> {
         let (Some(layers), Some((_, filled, placed))) = (self.options.layers, &mut self.best) else { return Ok(None) };
@@ -262,6 +287,22 @@ impl Trial<'_> {
         *filled = filled.changed("boundary layers", mesh);
         *placed = place_points(filled, self.boundary, points, placed.embedding.take());
         Ok(Some(format!("{} boundary layers", layers.count)))
+    }
+
+    /// The best mesh, and in words why it and no other.
+    fn finish(self, why_none: Option<String>, layered: Option<String>) -> PlacedFill {
+        let Self { best, seen, result, ctx, .. } = self;
+        let is_choice = seen.len() > 1;
+        let best_of = best
+            .as_ref()
+            .filter(|_| is_choice)
+            .map(|(_, filled, _)| format!("{}, the best of {}", words(filled), seen.join(", ")));
+        let other = if is_choice { "further" } else { "other" };
+        let none_valid = why_none.map(|why| format!("no {other} mesh was tried, since none can be valid: {why}"));
+        let choice: Vec<String> = [best_of, none_valid, layered].into_iter().flatten().collect();
+        let stop = if result.stop == StopReason::Finished { ctx.stop().unwrap_or(result.stop) } else { result.stop };
+        let meshes = best.into_iter().map(|(_, filled, placed)| (filled, Some(placed))).collect();
+        PlacedFill { meshes, stop, tried: result.tried, choice: (!choice.is_empty()).then(|| choice.join("; ")) }
     }
 }
 
