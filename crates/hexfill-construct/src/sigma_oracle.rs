@@ -364,31 +364,10 @@ fn balls() {
     }
 }
 
-/// The boundary of the filled cells of a grid, with positions (numbered as the generator does: by first use).
+/// The boundary of the filled cells of a grid, with positions.
 fn voxels(size: [usize; 3], filled: impl Fn([usize; 3]) -> bool) -> (QuadSurface, Vec<[f64; 3]>) {
-    use hexfill_mesh::cube::{FACETS, POSITIONS};
-    let inside = |p: [i64; 3]| (0..3).all(|k| (0..size[k] as i64).contains(&p[k])) && filled(p.map(|x| x as usize));
-    let mut points: Vec<[f64; 3]> = Vec::new();
-    for z in 0..size[2] as i64 {
-        for y in 0..size[1] as i64 {
-            for x in (0..size[0] as i64).filter(|&x| inside([x, y, z])) {
-                for (f, facet) in FACETS.iter().enumerate() {
-                    let mut beside = [x, y, z];
-                    beside[f / 2] += if f % 2 == 0 { -1 } else { 1 };
-                    for k in facet.iter().filter(|_| !inside(beside)) {
-                        let p = POSITIONS[*k];
-                        let p = [x as f64 + f64::from(p[0]), y as f64 + f64::from(p[1]), z as f64 + f64::from(p[2])];
-                        if !points.contains(&p) {
-                            points.push(p);
-                        }
-                    }
-                }
-            }
-        }
-    }
-    let surface = hexfill_mesh::generate::voxel_surface(size, filled).unwrap();
-    assert_eq!(points.len(), surface.n_vertices());
-    (surface, points)
+    let (surface, points) = hexfill_mesh::generate::voxels(size, filled).unwrap();
+    (surface, points.into_iter().map(|p| p.map(f64::from)).collect())
 }
 
 /// A box with single cells taken out: a ball with cavities.

@@ -1,18 +1,10 @@
 //! Which components of a surface bound the same solid: an outer one and the cavities right inside it.
 //!
-//! A component lies inside another iff the other winds round one of its vertices (solid angles, van Oosterom and
-//! Strackee 1983). At even depth it is the outside of a solid, at odd depth a cavity of the solid round it; outsides
+//! A component lies inside another iff the other winds round one of its vertices. At even depth it is the outside of a solid, at odd depth a cavity of the solid round it; outsides
 //! must face outward (positive volume), cavities the other way.
 
-use crate::vector::{Point, det, sub};
-
-/// Solid angle of a triangle seen from a point.
-fn angle(at: Point, t: [Point; 3]) -> f64 {
-    let [a, b, c] = t.map(|p| sub(p, at));
-    let dot = |a: Point, b: Point| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    let [la, lb, lc] = [a, b, c].map(|p| dot(p, p).sqrt());
-    2.0 * det([a, b, c]).atan2(la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb)
-}
+use crate::vector::{Point, sub};
+use hexfill_geometry::{det, holders};
 
 /// The solids as lists of components, the outside first; ascending by outside. `component[t]` is that of triangle `t`.
 ///
@@ -24,25 +16,15 @@ pub(crate) fn solids(
     n_components: usize,
     points: &[Point],
 ) -> Result<Vec<Vec<usize>>, String> {
-    let at = |t: [u32; 3]| t.map(|v| points[v as usize]);
-    let mut parts: Vec<Vec<[u32; 3]>> = vec![Vec::new(); n_components];
-    for (&t, &c) in triangles.iter().zip(component) {
-        parts[c].push(t);
+    let mut parts: Vec<Vec<[Point; 3]>> = vec![Vec::new(); n_components];
+    for (t, &c) in triangles.iter().zip(component) {
+        parts[c].push(t.map(|v| points[v as usize]));
     }
-    let volume = |part: &[[u32; 3]]| -> f64 {
-        let origin = points[part[0][0] as usize];
-        part.iter().map(|&t| det(at(t).map(|p| sub(p, origin)))).sum()
+    let volume = |part: &[[Point; 3]]| -> f64 {
+        let from_origin = part.iter().map(|t| t.map(|p| sub(p, part[0][0])));
+        from_origin.map(|[a, b, c]| det(a, b, c)).sum()
     };
-    let around: Vec<Vec<usize>> = (0..n_components)
-        .map(|c| {
-            let seen_from = points[parts[c][0][0] as usize];
-            let winds = |other: usize| {
-                let total: f64 = parts[other].iter().map(|&t| angle(seen_from, at(t))).sum();
-                total.abs() > 2.0 * std::f64::consts::PI
-            };
-            (0..n_components).filter(|&other| other != c && winds(other)).collect()
-        })
-        .collect();
+    let around = holders(&parts);
     let mut solids: Vec<Vec<usize>> = Vec::new();
     let mut solid_of = vec![usize::MAX; n_components];
     for c in (0..n_components).filter(|&c| around[c].len().is_multiple_of(2)) {

@@ -1,32 +1,14 @@
 //! Surfaces of others: a sphere of 1,192 quads and a pen holder of genus 8.
 
+mod common;
+
+use common::read_obj;
 use hexfill_check::{Judged, Level, judge};
 use hexfill_construct::{Existence, Options, construct, existence};
-use hexfill_mesh::{Context, QuadSurface};
-
-/// Vertices and faces of a Wavefront OBJ file.
-fn parse_obj(text: &str) -> (Vec<[f64; 3]>, Vec<Vec<u32>>) {
-    let (mut points, mut faces) = (Vec::new(), Vec::new());
-    for line in text.lines() {
-        let mut words = line.split_whitespace();
-        match words.next() {
-            Some("v") => {
-                let p: Vec<f64> = words.take(3).map(|w| w.parse().unwrap()).collect();
-                points.push([p[0], p[1], p[2]]);
-            }
-            Some("f") => {
-                let index = |w: &str| w.split('/').next().unwrap().parse::<u32>().unwrap() - 1;
-                faces.push(words.map(index).collect());
-            }
-            _ => {}
-        }
-    }
-    (points, faces)
-}
+use hexfill_mesh::Context;
 
 fn fill(text: &str, n_quads: usize, genus: u64) -> f64 {
-    let (points, faces) = parse_obj(text);
-    let surface = QuadSurface::try_from_polygons(points.len(), &faces).unwrap();
+    let (surface, points) = read_obj(text);
     assert_eq!((surface.n_quads(), surface.genus(), surface.n_components()), (n_quads, genus, 1));
     assert!(matches!(existence(&surface, Some(&points)), Existence::Exists { .. }));
     let made = construct(&surface, Some(&points), &Options::default(), &Context::default()).unwrap();

@@ -97,11 +97,11 @@ pub(crate) fn positive_part(matrix: &Matrix9) -> Matrix9 {
 mod tests {
     use super::*;
     use crate::jacobian::scaled_with_gradient;
-    use crate::random::Random;
+    use hexfill_mesh::Random;
 
     #[test]
     fn hessian_matches_differences_of_the_gradient() {
-        let mut random = Random::new(11, 0);
+        let mut random = Random::of_task(11, 0);
         for _ in 0..20 {
             let c: [Vector; 3] =
                 std::array::from_fn(|k| std::array::from_fn(|x| f64::from(u8::from(k == x)) + 0.5 * random.signed()));
@@ -122,7 +122,7 @@ mod tests {
 
     #[test]
     fn positive_part_splits_a_matrix() {
-        let mut random = Random::new(12, 0);
+        let mut random = Random::of_task(12, 0);
         let mut m = [[0.0; 9]; 9];
         for i in 0..9 {
             for j in 0..=i {

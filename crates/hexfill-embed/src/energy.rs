@@ -166,11 +166,11 @@ fn hex_energy(p: &[Vector; 8], terms: u64, size: f64, epsilon: f64, volume_weigh
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::Random;
+    use hexfill_mesh::Random;
 
     #[test]
     fn gradient_matches_differences() {
-        let mut random = Random::new(5, 0);
+        let mut random = Random::of_task(5, 0);
         for terms in [CORNERS, u64::MAX, CORNERS | 1 << 17] {
             let p: [Vector; 8] = hexfill_mesh::cube::POSITIONS.map(|p| p.map(|x| f64::from(x) + 0.8 * random.signed()));
             let (_, g) = hex_energy(&p, terms, 0.7, 0.5, 0.3);

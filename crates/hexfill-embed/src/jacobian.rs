@@ -314,7 +314,7 @@ pub(crate) fn add_by_corner(gradient: &mut [Vector; 8], weights: &[Vector; 8], s
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::Random;
+    use hexfill_mesh::Random;
     use hexfill_mesh::cube::POSITIONS;
 
     fn random_hex(random: &mut Random, size: f64) -> [Vector; 8] {
@@ -323,7 +323,7 @@ mod tests {
 
     #[test]
     fn bernstein_form_is_the_determinant() {
-        let mut random = Random::new(1, 0);
+        let mut random = Random::of_task(1, 0);
         for _ in 0..100 {
             let p = random_hex(&mut random, 1.0);
             let b = Frame::new(&p).bernstein();
@@ -349,7 +349,7 @@ mod tests {
         for n in 0..17usize.pow(3) {
             lattice.push(weights_at([n / 289, n / 17 % 17, n % 17].map(|i| i as f64 / 16.0)));
         }
-        let mut random = Random::new(2, 0);
+        let mut random = Random::of_task(2, 0);
         let (mut valid, mut invalid_with_good_corners) = (0, 0);
         for _ in 0..400 {
             let p = random_hex(&mut random, 0.6);
@@ -378,7 +378,7 @@ mod tests {
 
     #[test]
     fn gradient_of_the_scaled_jacobian() {
-        let mut random = Random::new(3, 0);
+        let mut random = Random::of_task(3, 0);
         for _ in 0..50 {
             let c: [Vector; 3] = std::array::from_fn(|_| std::array::from_fn(|_| random.signed()));
             let (s, g) = scaled_with_gradient(&c).unwrap();

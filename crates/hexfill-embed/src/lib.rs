@@ -29,7 +29,6 @@ mod patch;
 mod problem;
 mod program;
 mod raise;
-mod random;
 mod report;
 #[cfg(test)]
 mod samples;

@@ -269,31 +269,11 @@ impl Barrier<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::Random;
-    use crate::samples::grid;
+    use crate::samples::{check_barrier, grid, grid_points};
 
     #[test]
     fn gradient_matches_differences_and_the_barrier_is_closed() {
-        let mesh = grid(2);
-        let problem = Problem::new(27, mesh.hexes_raw(), &mesh.boundary_vertices());
-        let mut random = Random::new(51, 0);
-        let mut points: Vec<Vector> = (0..27).map(|v| [v % 3, v / 3 % 3, v / 9].map(f64::from)).collect();
-        points[13] = std::array::from_fn(|k| points[13][k] + 0.4 * random.signed());
-        let inner = vec![vec![[0.5, 0.25, 0.5]]; 8];
-        let barrier = Barrier { problem: &problem, inner: &inner, t: 0.1, height: 0.9 };
-        let total = |points: &[Vector]| (0..8).map(|h| barrier.hex(h, points).0).sum::<f64>();
-        let mut gradient = vec![0.0; 3];
-        let rows: Vec<_> = (0..8).map(|h| barrier.hex(h, &points)).collect();
-        problem.sum_at_variables(&rows, &mut gradient);
-        for k in 0..3 {
-            let (mut high, mut low) = (points.clone(), points.clone());
-            high[13][k] += 1e-6;
-            low[13][k] -= 1e-6;
-            let slope = (total(&high) - total(&low)) / 2e-6;
-            assert!((slope - gradient[k]).abs() < 1e-5 * (1.0 + slope.abs()), "{slope} {}", gradient[k]);
-        }
-        points[13] = [5.0, 0.0, 0.0];
-        assert_eq!(total(&points), f64::INFINITY);
+        check_barrier(|problem, inner, h, points| Barrier { problem, inner, t: 0.1, height: 0.9 }.hex(h, points));
     }
 
     #[test]
@@ -303,8 +283,7 @@ mod tests {
         let fixed = mesh.boundary_vertices();
         let problem = Problem::new(fixed.len(), mesh.hexes_raw(), &fixed);
         let side = n + 1;
-        let exact: Vec<Vector> =
-            (0..fixed.len()).map(|v| [v % side, v / side % side, v / side / side].map(|x| x as f64)).collect();
+        let exact = grid_points(n);
         let mut points = exact.clone();
         let moved = 3 + side * (3 + side * 3);
         points[moved] = [3.35, 3.3, 2.75];

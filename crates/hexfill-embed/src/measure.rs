@@ -33,12 +33,12 @@ pub(crate) fn log_condition_with_gradient(c: &[Vector; 3]) -> Option<(f64, [Vect
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::Random;
+    use hexfill_mesh::Random;
 
     #[test]
     fn condition_of_a_cube_is_one_and_the_gradient_is_right() {
         assert!(log_condition(&[[2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 2.0]]).abs() < 1e-15);
-        let mut random = Random::new(31, 0);
+        let mut random = Random::of_task(31, 0);
         for _ in 0..20 {
             let c: [Vector; 3] =
                 std::array::from_fn(|k| std::array::from_fn(|x| f64::from(u8::from(k == x)) + 0.4 * random.signed()));

@@ -189,31 +189,12 @@ impl Barrier<'_> {
 mod tests {
     use super::*;
     use crate::maxmin::judge;
-    use crate::random::Random;
-    use crate::samples::grid;
+    use crate::samples::{check_barrier, grid, grid_points};
+    use hexfill_mesh::Random;
 
     #[test]
     fn gradient_matches_differences_and_the_barrier_is_closed() {
-        let mesh = grid(2);
-        let problem = Problem::new(27, mesh.hexes_raw(), &mesh.boundary_vertices());
-        let mut random = Random::new(51, 0);
-        let mut points: Vec<Vector> = (0..27).map(|v| [v % 3, v / 3 % 3, v / 9].map(f64::from)).collect();
-        points[13] = std::array::from_fn(|k| points[13][k] + 0.4 * random.signed());
-        let inner = vec![vec![[0.5, 0.25, 0.5]]; 8];
-        let barrier = Barrier { problem: &problem, inner: &inner, t: 0.1, width: 0.9 };
-        let total = |points: &[Vector]| (0..8).map(|h| barrier.hex(h, points).0).sum::<f64>();
-        let mut gradient = vec![0.0; 3];
-        let rows: Vec<_> = (0..8).map(|h| barrier.hex(h, &points)).collect();
-        problem.sum_at_variables(&rows, &mut gradient);
-        for k in 0..3 {
-            let (mut high, mut low) = (points.clone(), points.clone());
-            high[13][k] += 1e-6;
-            low[13][k] -= 1e-6;
-            let slope = (total(&high) - total(&low)) / 2e-6;
-            assert!((slope - gradient[k]).abs() < 1e-5 * (1.0 + slope.abs()), "{slope} {}", gradient[k]);
-        }
-        points[13] = [5.0, 0.0, 0.0];
-        assert_eq!(total(&points), f64::INFINITY);
+        check_barrier(|problem, inner, h, points| Barrier { problem, inner, t: 0.1, width: 0.9 }.hex(h, points));
     }
 
     #[test]
@@ -222,14 +203,11 @@ mod tests {
         let mesh = grid(n);
         let fixed = mesh.boundary_vertices();
         let problem = Problem::new(fixed.len(), mesh.hexes_raw(), &fixed);
-        let mut random = Random::new(52, 0);
-        let side = n + 1;
-        let mut points: Vec<Vector> = (0..fixed.len())
-            .map(|v| {
-                let exact = [v % side, v / side % side, v / side / side].map(|x| x as f64);
-                if fixed[v] { exact } else { exact.map(|x| x + 0.3 * random.signed()) }
-            })
-            .collect();
+        let mut random = Random::of_task(52, 0);
+        let mut points = grid_points(n);
+        for (p, _) in points.iter_mut().zip(&fixed).filter(|(_, is_fixed)| !**is_fixed) {
+            *p = p.map(|x| x + 0.3 * random.signed());
+        }
         let before = judge(&problem, &points, 1.0).worst;
         assert!(before > 0.0 && before < 0.6, "{before}");
         raise(&problem, &mut points, 0.99, Limits { rounds: 60, iterations: 40 }, &Context::default());

@@ -204,12 +204,12 @@ pub(crate) fn refine(stars: &mut [Star], hint: &[Vector], context: &Context<'_>)
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::Random;
+    use hexfill_mesh::Random;
 
     #[test]
     fn no_triangle_of_an_area_beats_the_equilateral_one() {
         assert!((equilateral(std::f64::consts::FRAC_PI_2) - 1.0).abs() < 1e-12);
-        let mut random = Random::new(22, 0);
+        let mut random = Random::of_task(22, 0);
         let (mut seen, mut near) = (0, 0.0f64);
         for _ in 0..200_000 {
             let size = 0.2 + random.unit();

@@ -12,9 +12,9 @@
 //! an upper bound of the star whenever one stops (up to rounding of some 1e-14). Pieces are spherical triangles, halved at their longest side.
 
 use crate::program::Program;
-use crate::random::Random;
 use crate::vector::{Vector, add, add_scaled, cross, det, dot, midpoint, norm, scale, sub, unit};
 use hexfill_geometry::Ray;
+use hexfill_mesh::Random;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
@@ -81,7 +81,7 @@ impl Directions {
 
     /// Climbs from `hint` and some other directions until `enough` is reached or nothing gets better. Returns the best.
     pub(crate) fn climb(&self, hint: &[Vector], enough: f64) -> (f64, Vec<Vector>) {
-        let mut random = Random::new(17, self.corners.len() as u64);
+        let mut random = Random::of_task(17, self.corners.len() as u64);
         let mut best = (f64::NEG_INFINITY, hint.to_vec());
         for attempt in 0..6 {
             let mut u = match attempt {
@@ -478,7 +478,7 @@ mod tests {
 
     #[test]
     fn node_bounds_hold_at_random_points_of_the_node() {
-        let mut random = Random::new(40, 0);
+        let mut random = Random::of_task(40, 0);
         for _ in 0..60 {
             let mut direction = || unit([random.signed(), random.signed(), random.signed()]).unwrap_or([1.0, 0.0, 0.0]);
             let (a, b, c) = (direction(), direction(), direction());
@@ -539,7 +539,7 @@ mod tests {
         let (attained, _) = star.climb(&star.relaxed(), 1.0);
         let found = star.search(attained, 1.0, 4000);
         assert!(found.bound - found.attained < 0.03, "{found:?}");
-        let mut random = Random::new(41, 0);
+        let mut random = Random::of_task(41, 0);
         let sampled = sample(&star, &mut random, 30_000);
         assert!(sampled <= found.bound && found.attained > sampled - 1e-9, "{sampled} {found:?}");
     }

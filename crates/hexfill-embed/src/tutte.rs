@@ -4,10 +4,9 @@
 //! weights for restarts. The fixed vertices do not move.
 
 use crate::problem::{Problem, add_long, dot_long, fill};
-use crate::random::Random;
 use crate::vector::Vector;
-use hexfill_mesh::Context;
 use hexfill_mesh::cube::EDGES;
+use hexfill_mesh::{Context, Random};
 
 /// Neighbours and weights of the free vertices, row by row.
 struct Laplacian {
@@ -78,7 +77,7 @@ impl Laplacian {
 }
 
 /// Places the free vertices of `points`; with `is_guess` they start from where they are. Variables that no path of edges joins to a fixed vertex stay where they are.
-/// Told to stop, it leaves them on the way.
+/// Told to stop, it leaves them on the way if there are many.
 pub(crate) fn place(
     problem: &Problem,
     points: &mut [Vector],
@@ -106,6 +105,9 @@ pub(crate) fn place(
     }
 }
 
+/// So few variables are solved for in a moment.
+const QUICK: usize = 10_000;
+
 fn conjugate_gradients(
     problem: &Problem,
     laplacian: &Laplacian,
@@ -124,7 +126,7 @@ fn conjugate_gradients(
     let mut rz = dot_long(&residual, &z);
     let enough = 1e-20 * dot_long(right, &precondition(right)).max(f64::MIN_POSITIVE);
     for _ in 0..2000.min(4 * n + 10) {
-        if rz <= enough || context.stop().is_some() {
+        if rz <= enough || n > QUICK && context.stop().is_some() {
             break;
         }
         laplacian.apply(problem, &p, &mut applied);

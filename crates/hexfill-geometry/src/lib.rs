@@ -1,4 +1,4 @@
-//! A little geometry that several rooms need: vectors, angles, and the best directions of a vertex star's free edges.
+//! A little geometry that several rooms need: vectors, angles, winding numbers, and the best directions of a vertex star's free edges.
 //!
 //! The scaled Jacobian of a hex corner is the determinant of its three unit edges. With two edges given it is linear in the
 //! third, so the best direction of one free edge at a vertex is a max-min program with a closed form
@@ -11,10 +11,14 @@
 
 mod angle;
 mod direction;
+mod quad;
 mod star;
 mod vector;
+mod winding;
 
 pub use angle::{corner_angle, dihedral_angle};
 pub use direction::{Best, best_direction};
+pub use quad::{cone, halves};
 pub use star::{Ray, Reached, climb_star, star_bound};
 pub use vector::{Vector, add, add_scaled, cross, det, direction, dot, midpoint, norm, scale, sub, unit};
+pub use winding::{holders, solid_angle, winding_number};

@@ -10,6 +10,13 @@ impl Random {
         Self(seed)
     }
 
+    /// The sequence of a task under a seed; those of different tasks are independent for our purposes.
+    pub fn of_task(seed: u64, task: u64) -> Self {
+        let mut random = Self(seed ^ task.wrapping_mul(0xD1B5_4A32_D192_ED03));
+        random.next_u64();
+        random
+    }
+
     /// The next 64 bits.
     pub fn next_u64(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
@@ -27,6 +34,11 @@ impl Random {
     /// Uniform in [0, 1).
     pub fn unit(&mut self) -> f64 {
         (self.next_u64() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// Uniform in [-1, 1).
+    pub fn signed(&mut self) -> f64 {
+        2.0 * self.unit() - 1.0
     }
 
     /// Puts a slice in random order (Fisher-Yates).

@@ -5,47 +5,24 @@
 //! them (least difference from the hexes that edges want), but one at a time, with plane positions, and without any check
 //! of what is legal: for pictures of simple solids.
 
+use hexfill_geometry::{Vector as Point, cross, dot, norm, sub};
 use hexfill_mesh::{Chord, Dart, QuadSurface, chords};
 use std::fmt::Write;
-
-type Point = [f64; 3];
 
 /// Size of one panel.
 const PANEL: f64 = 300.0;
 const COLOURS: [&str; 10] =
     ["#c23b22", "#1f6fb4", "#2a8f4a", "#8e44ad", "#d98200", "#0e8c8c", "#a0522d", "#c2378f", "#5a6b00", "#3b3b98"];
 
-fn sub(a: Point, b: Point) -> Point {
-    [0, 1, 2].map(|c| a[c] - b[c])
-}
-
-fn dot(a: Point, b: Point) -> f64 {
-    (0..3).map(|c| a[c] * b[c]).sum()
-}
-
-fn cross(a: Point, b: Point) -> Point {
-    [0, 1, 2].map(|c| a[(c + 1) % 3] * b[(c + 2) % 3] - a[(c + 2) % 3] * b[(c + 1) % 3])
-}
-
+/// The unit vector along `a`, which is not zero.
 fn unit(a: Point) -> Point {
-    let length = dot(a, a).sqrt();
+    let length = norm(a);
     a.map(|x| x / length)
 }
 
-fn read_obj(text: &str) -> (QuadSurface, Vec<Point>) {
-    let (mut points, mut faces) = (Vec::new(), Vec::new());
-    for line in text.lines() {
-        let words: Vec<&str> = line.split_whitespace().collect();
-        match words.first() {
-            Some(&"v") => points.push([1, 2, 3].map(|k| words[k].parse::<f64>().unwrap())),
-            Some(&"f") => {
-                let index = |w: &&str| w.split('/').next().unwrap().parse::<u32>().unwrap() - 1;
-                faces.push(words[1..].iter().map(index).collect::<Vec<u32>>());
-            }
-            _ => {}
-        }
-    }
-    (QuadSurface::try_from_polygons(points.len(), &faces).unwrap(), points)
+fn read(path: &str) -> (QuadSurface, Vec<Point>) {
+    let data = hexfill_io::read_path(path.as_ref(), None).expect("a readable surface");
+    (data.quad_surface().expect("a closed quad surface"), data.points)
 }
 
 fn normal(surface: &QuadSurface, points: &[Point], d: Dart) -> Point {
@@ -235,7 +212,7 @@ fn main() {
         std::process::exit(2);
     };
     let layers: usize = layers.first().map_or(0, |n| n.parse().unwrap());
-    let (mut surface, mut points) = read_obj(&std::fs::read_to_string(input).unwrap());
+    let (mut surface, mut points) = read(input);
     let to = Projection::new(&points);
     let mut body = String::new();
     draw(&mut body, &surface, &points, &to, 0);

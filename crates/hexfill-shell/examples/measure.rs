@@ -1,44 +1,28 @@
 //! Measures sweeps: `cargo run --release -p hexfill-shell --example measure -- SURFACE.obj|box:N|refined:N ... [pillows=K] [seed=S]`.
 
 use hexfill_check::{Judged, Level, judge};
+use hexfill_geometry::{Vector, cross, dot, norm, sub, unit};
 use hexfill_mesh::generate::{octagonal_spindle, random_sphere, refined, schneiders_pyramid, voxel_surface};
 use hexfill_mesh::{Context, QuadSurface, chords};
 use hexfill_shell::{SweepOptions, sweep};
 use std::collections::HashMap;
 
-fn read_obj(text: &str) -> (QuadSurface, Vec<[f64; 3]>) {
-    let (mut points, mut faces) = (Vec::new(), Vec::new());
-    for line in text.lines() {
-        let words: Vec<&str> = line.split_whitespace().collect();
-        match words.first() {
-            Some(&"v") => points.push([1, 2, 3].map(|k| words[k].parse::<f64>().unwrap())),
-            Some(&"f") => {
-                let index = |w: &&str| w.split('/').next().unwrap().parse::<u32>().unwrap() - 1;
-                faces.push(words[1..].iter().map(index).collect::<Vec<u32>>());
-            }
-            _ => {}
-        }
-    }
-    (QuadSurface::try_from_polygons(points.len(), &faces).unwrap(), points)
+fn read(path: &str) -> (QuadSurface, Vec<Vector>) {
+    let data = hexfill_io::read_path(path.as_ref(), None).expect("a readable surface");
+    (data.quad_surface().expect("a closed quad surface"), data.points)
 }
 
 /// Angle / 90 degrees inside at each edge, from the normals of its quads.
-fn angles(surface: &QuadSurface, points: &[[f64; 3]]) -> HashMap<(u32, u32), f32> {
-    let sub = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|c| a[c] - b[c]);
-    let cross =
-        |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|c| a[(c + 1) % 3] * b[(c + 2) % 3] - a[(c + 2) % 3] * b[(c + 1) % 3]);
-    let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+fn angles(surface: &QuadSurface, points: &[Vector]) -> HashMap<(u32, u32), f32> {
     let normal = |q: hexfill_mesh::QuadId| {
         let [a, b, c, d] = surface.quad(q).map(|v| points[v.index()]);
-        let n = cross(sub(c, a), sub(d, b));
-        let length = dot(n, n).sqrt();
-        n.map(|x| x / length)
+        unit(cross(sub(c, a), sub(d, b))).expect("a quad spans a plane")
     };
     let angle = |d: hexfill_mesh::Dart| {
         let (n, m) = (normal(d.quad()), normal(surface.twin(d).quad()));
         let (a, b) = (surface.origin(d), surface.target(d));
         let along = sub(points[b.index()], points[a.index()]);
-        let sine = dot(cross(n, m), along) / dot(along, along).sqrt();
+        let sine = dot(cross(n, m), along) / norm(along);
         let inside = std::f64::consts::PI - sine.atan2(dot(n, m));
         ((a.0.min(b.0), a.0.max(b.0)), (inside / std::f64::consts::FRAC_PI_2) as f32)
     };
@@ -79,7 +63,7 @@ fn main() {
             Some(("random", n)) => (random_sphere(number(n), options.seed).unwrap(), Vec::new()),
             Some(("pyramid", n)) => (refined(&schneiders_pyramid(), number(n) as u32).unwrap(), Vec::new()),
             Some(("spindle", n)) => (refined(&octagonal_spindle(), number(n) as u32).unwrap(), Vec::new()),
-            _ => read_obj(&std::fs::read_to_string(&argument).unwrap()),
+            _ => read(&argument),
         };
         let crossings: usize = chords(&surface).iter().map(|c| c.self_crossings.len()).sum();
         let angles = if want && !points.is_empty() { angles(&surface, &points) } else { Default::default() };

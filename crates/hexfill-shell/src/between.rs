@@ -7,13 +7,14 @@
 //! Invariant: with one vertex of the outer component, level 0, every column has a new vertex on each level and one of the cavity on the last.
 
 use crate::front::{Front, NONE};
+use hexfill_geometry::{Vector, cone, dot, sub};
 use hexfill_mesh::{Dart, QuadSurface};
 
 /// Images of the first dart that are tried, the nearest ones.
 const MOST_IMAGES: usize = 400;
 
-fn square_distance(a: [f64; 3], b: [f64; 3]) -> f64 {
-    (0..3).map(|k| (a[k] - b[k]) * (a[k] - b[k])).sum()
+fn square_distance(a: Vector, b: Vector) -> f64 {
+    dot(sub(a, b), sub(a, b))
 }
 
 /// The hexes between two components that are mirror images, vertices of the surface first; `None` if they are not.
@@ -26,12 +27,7 @@ pub(crate) fn between(surface: &QuadSurface, points: &[[f64; 3]]) -> Option<Vec<
     }
     let volume = |side: &[u32]| -> f64 {
         let corners = |q: u32| surface.quads()[q as usize].map(|v| points[v.index()]);
-        side.iter()
-            .map(|&q| {
-                let [a, b, c, d] = corners(q);
-                crate::inside::determinant([a, b, c]) + crate::inside::determinant([a, c, d])
-            })
-            .sum()
+        side.iter().map(|&q| cone(corners(q))).sum()
     };
     let mut volumes = [volume(&sides[0]), volume(&sides[1])];
     if volumes[0] < volumes[1] {

@@ -7,6 +7,7 @@
 use crate::blend::blend_block;
 use crate::compress::uncompressed;
 use crate::lift::{AXES, Lattice, parallel_classes};
+use hexfill_geometry::{add_scaled, norm, sub};
 use hexfill_mesh::cube::POSITIONS;
 use hexfill_mesh::{HexMesh, QuadSurface};
 use rustc_hash::FxHashMap;
@@ -97,10 +98,10 @@ pub fn cut_boundary_layers(
                 // Outer end first.
                 let (v, w) = if from_surface[&key(v, w)] == v { (v, w) } else { (w, v) };
                 let (p, q) = (points[v as usize], points[w as usize]);
-                let length = (0..3).map(|k| (q[k] - p[k]).powi(2)).sum::<f64>().sqrt();
+                let length = norm(sub(q, p));
                 for (i, share) in layers.cuts(length).into_iter().enumerate() {
                     let inner = lattice.point_on_edge(v, w, i);
-                    at[inner as usize] = std::array::from_fn(|k| p[k] + share * (q[k] - p[k]));
+                    at[inner as usize] = add_scaled(p, share, sub(q, p));
                 }
             }
         }

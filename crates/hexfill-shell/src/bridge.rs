@@ -8,6 +8,7 @@
 
 use crate::front::Front;
 use crate::inside::winding_number;
+use hexfill_geometry::{Vector as Point, add_scaled, cross, dot, norm, sub};
 use hexfill_mesh::{QuadId, QuadSurface};
 
 /// Columns less upright than this (cosine at either quad) are not built.
@@ -15,18 +16,8 @@ const MOST_LEANING: f64 = 0.3;
 /// Columns whose axis is looked at: winding numbers take time.
 const LOOKED_AT: usize = 50;
 
-type Point = [f64; 3];
-
-fn sub(a: Point, b: Point) -> Point {
-    [0, 1, 2].map(|k| a[k] - b[k])
-}
-
-fn dot(a: Point, b: Point) -> f64 {
-    (0..3).map(|k| a[k] * b[k]).sum()
-}
-
-fn middle(a: Point, b: Point, t: f64) -> Point {
-    [0, 1, 2].map(|k| a[k] + t * (b[k] - a[k]))
+fn between(a: Point, b: Point, t: f64) -> Point {
+    add_scaled(a, t, sub(b, a))
 }
 
 /// A quad's centre, outward unit normal and mean edge.
@@ -40,10 +31,9 @@ struct Seat {
 impl Seat {
     fn new(quad: [u32; 4], points: &[Point]) -> Self {
         let [a, b, c, d] = quad.map(|v| points[v as usize]);
-        let (x, y) = (sub(c, a), sub(d, b));
-        let normal = [x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]];
-        let length = dot(normal, normal).sqrt();
-        let edge = [[a, b], [b, c], [c, d], [d, a]].into_iter().map(|[p, q]| dot(sub(p, q), sub(p, q)).sqrt());
+        let normal = cross(sub(c, a), sub(d, b));
+        let length = norm(normal);
+        let edge = [[a, b], [b, c], [c, d], [d, a]].into_iter().map(|[p, q]| norm(sub(p, q)));
         Self {
             quad,
             centre: [0, 1, 2].map(|k| (a[k] + b[k] + c[k] + d[k]) / 4.0),
@@ -55,7 +45,7 @@ impl Seat {
     /// What a column to `other` costs: its length, more where it leans; `None` if it would leave the solid.
     fn cost(&self, other: &Self) -> Option<f64> {
         let axis = sub(other.centre, self.centre);
-        let length = dot(axis, axis).sqrt();
+        let length = norm(axis);
         let (here, there) = (-dot(axis, self.normal) / length, dot(axis, other.normal) / length);
         (here.min(there) > MOST_LEANING).then(|| length / (here * there))
     }
@@ -81,14 +71,14 @@ impl Front {
         let is_inside = |&(_, i, j): &(f64, usize, usize)| {
             let (a, b) = (outer[i].centre, inner[j].centre);
             [0.1, 0.5, 0.9].into_iter().all(|t| {
-                let turns = winding_number(self.surface(), points, middle(a, b, t));
+                let turns = winding_number(self.surface(), points, between(a, b, t));
                 (turns - 1.0).abs() < 0.5
             })
         };
         let found = columns.iter().take(LOOKED_AT).filter(|c| is_inside(c)).find_map(|&(_, i, j)| {
             let (from, to) = (&outer[i], &inner[j]);
             let axis = sub(to.centre, from.centre);
-            let length = (2.0 * dot(axis, axis).sqrt() / (from.edge + to.edge)).round();
+            let length = (2.0 * norm(axis) / (from.edge + to.edge)).round();
             // Both ends stand on pillows already.
             let k = (length as u32).saturating_sub(2 * pillows).clamp(1, 1000);
             self.column(from.quad, to.quad, k, points)
@@ -115,7 +105,7 @@ impl Front {
                 end
             } else {
                 let t = f64::from(level) / f64::from(k);
-                new.extend((0..4).map(|i| middle(at(from[i]), at(end[i]), t)));
+                new.extend((0..4).map(|i| between(at(from[i]), at(end[i]), t)));
                 n_vertices += 4;
                 [4, 3, 2, 1].map(|i| n_vertices - i)
             };

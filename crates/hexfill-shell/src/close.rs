@@ -1,39 +1,60 @@
-//! Closing a small void from the atlas of smallest known fillings.
+//! Closing a small void: from the atlas of smallest known fillings, or by inward flips that lead there.
 //!
-//! What is behind the front blocks pairs of its vertices: the filling must avoid them, and the atlas knows several fillings of many spheres. Where none
-//! fits, a pillow goes first: behind it nothing is blocked.
+//! What is behind the front blocks pairs of its vertices: the filling must avoid them, so that the whole is proper. The atlas knows several
+//! fillings of many spheres. Where none fits, or blocked pairs cost too much, a pillow goes first: behind it nothing is blocked.
 
 use crate::front::Front;
-use hexfill_mesh::QuadSurface;
-use hexfill_search::{Atlas, Cavity};
+use hexfill_mesh::{Context, QuadSurface};
+use hexfill_search::{Atlas, FillOptions, MAX_QUADS, fill_avoiding};
+
+/// Cavities that inward flips may look at, for a void with its blocked pairs and for one in a pillow.
+const CAVITIES: u64 = 10_000;
+/// Cavities kept on each level.
+const BEAM: usize = 200;
 
 impl Front {
     /// The state with the void filled from the atlas, by the fewest hexes. `None` if the front is not one sphere that the atlas knows.
     pub fn closed_from(&self, atlas: &Atlas) -> Option<Self> {
-        let direct = self.filled_from(atlas);
-        let behind_pillow = self.pillowed().0.filled_from(atlas);
-        let both = [direct, behind_pillow].into_iter().flatten();
+        // One cavity: the void itself.
+        let fill = |front: &Self| front.filled(atlas, 1, &Context::default());
+        let both = [fill(self), fill(&self.pillowed().0)].into_iter().flatten();
         both.min_by_key(|state| state.hexes().len())
     }
 
-    fn filled_from(&self, atlas: &Atlas) -> Option<Self> {
-        let front = QuadSurface::try_new(self.n_vertices() as usize, &self.quads()).ok()?;
-        let (mut cavity, ids) = Cavity::from_surface(&front)?;
-        let mut own = std::collections::BTreeSet::new();
-        for quad in cavity.quads() {
-            own.extend(quad.iter().flat_map(|&a| quad.iter().map(move |&b| (a, b))));
+    /// The state with the void filled by inward flips, if the atlas does not know it. `None` if the front is too large, no sphere, or nothing
+    /// was found.
+    pub(crate) fn closed(&self, ctx: &Context<'_>) -> Option<Self> {
+        if self.n_quads() == 0 {
+            return Some(self.clone());
         }
-        let n = ids.len() as u8;
-        for (a, b) in (0..n).flat_map(|a| (a + 1..n).map(move |b| (a, b))) {
-            if !own.contains(&(a, b)) && self.is_joined(ids[usize::from(a)], ids[usize::from(b)]) {
-                cavity.block(a, b);
-            }
+        let fill = |front: &Self| front.filled(Atlas::embedded(), CAVITIES, ctx);
+        let plain = fill(self);
+        if plain.as_ref().is_some_and(|state| state.hexes().len() <= self.hexes().len() + self.n_quads()) {
+            return plain;
         }
-        let (ball, map, mirrored) = atlas.best_fit(&cavity, u32::MAX)?;
-        let boundary: Vec<u32> = map.iter().map(|&v| ids[usize::from(v)]).collect();
-        let (inner, fresh) = ball.hexes_in(&boundary, mirrored, self.n_vertices());
-        let hexes: Vec<[u32; 8]> = self.hexes().iter().copied().chain(inner).collect();
-        self.with(self.n_vertices() + fresh, &hexes, &[]).ok()
+        let both = [plain, fill(&self.pillowed().0)].into_iter().flatten();
+        both.min_by_key(|state| state.hexes().len())
+    }
+
+    /// The state with the void filled as it is, by looking at so many cavities at most.
+    fn filled(&self, atlas: &Atlas, max_cavities: u64, ctx: &Context<'_>) -> Option<Self> {
+        if self.n_quads() > MAX_QUADS {
+            return None;
+        }
+        let surface = QuadSurface::try_new(self.n_vertices() as usize, &self.quads()).ok()?;
+        let options = FillOptions { max_cavities, beam: BEAM, ..FillOptions::default() };
+        let quiet = Context { progress: None, ..*ctx };
+        let outcome = fill_avoiding(&surface, &self.joined_pairs(), atlas, &options, &quiet)?;
+        let filling = &outcome.fillings.first()?.mesh;
+        let hexes: Vec<[u32; 8]> = self.hexes().iter().copied().chain(filling.hexes_raw()).collect();
+        self.with(filling.n_vertices() as u32, &hexes, &[]).ok()
+    }
+
+    /// The pairs of front vertices that are both in one cell. Quadratic time, for small fronts.
+    fn joined_pairs(&self) -> Vec<[u32; 2]> {
+        let vertices: Vec<u32> = (0..self.n_vertices()).filter(|&v| self.degree(v) > 0).collect();
+        let pairs = vertices.iter().enumerate().flat_map(|(i, &a)| vertices[..i].iter().map(move |&b| [a, b]));
+        pairs.filter(|&[a, b]| self.is_joined(a, b)).collect()
     }
 }
 

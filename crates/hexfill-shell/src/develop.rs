@@ -9,7 +9,7 @@
 //!
 //! Invariant: neighbouring vertices lie one step apart, and quads face outward of the solid as those of the surface do.
 
-use crate::inside::determinant;
+use hexfill_geometry::{cone, det};
 use hexfill_mesh::{Dart, QuadSurface};
 
 /// Coordinates in the grid.
@@ -112,13 +112,7 @@ impl Development {
     /// Six times the volume of some quads' component, in the grid.
     fn is_outward(&self, surface: &QuadSurface, quads: &[u32]) -> bool {
         let corner = |q: u32, i: usize| self.at[surface.quads()[q as usize][i].index()].map(f64::from);
-        let volume: f64 = quads
-            .iter()
-            .map(|&q| {
-                let [a, b, c, d] = [0, 1, 2, 3].map(|i| corner(q, i));
-                determinant([a, b, c]) + determinant([a, c, d])
-            })
-            .sum();
+        let volume: f64 = quads.iter().map(|&q| cone([0, 1, 2, 3].map(|i| corner(q, i)))).sum();
         volume > 0.0
     }
 
@@ -202,6 +196,7 @@ impl Affine {
                 }
             }
         }
+        let determinant = |[a, b, c]: [[f64; 3]; 3]| det(a, b, c);
         let whole = determinant(square);
         // Cramer's rule, row by row: rows[i] * square = mixed[i], and square is symmetric.
         let rows = mixed.map(|m| {
@@ -230,7 +225,11 @@ mod tests {
     fn there_are_24_rotations() {
         let all = rotations();
         assert_eq!(all.len(), 24);
-        assert!(all.iter().all(|m| determinant(m.map(|r| r.map(f64::from))) == 1.0));
+        let determinant = |m: &[Site; 3]| {
+            let [a, b, c] = m.map(|row| row.map(f64::from));
+            det(a, b, c)
+        };
+        assert!(all.iter().all(|m| determinant(m) == 1.0));
     }
 
     #[test]

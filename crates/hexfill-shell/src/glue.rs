@@ -9,6 +9,7 @@
 //! (Bern, Eppstein, Erickson, "Flipping cubical meshes", 2002.) Together with the flips of `zip`, whose checks and zips they share, they are all ways
 //! to glue a hex on a disk of quads. A hex edge that joins two old vertices which are joined already is a double edge, unless a zip glues the two.
 
+use crate::dart::turn;
 use crate::front::{Front, NONE};
 use crate::zip::{Pending, Refused, square};
 use hexfill_mesh::cube::{EDGES, FACETS};
@@ -51,9 +52,80 @@ static ADJACENT: LazyLock<[[(usize, usize); 4]; 6]> = LazyLock::new(|| {
     })
 });
 
-/// The dart `by` sides after `d` round its quad.
-const fn turn(d: u32, by: usize) -> u32 {
-    (d & !3) | ((d + by as u32) & 3)
+/// Where a hex is put: what it covers of the front, and what lies round that.
+struct Covering {
+    /// Dart on side 0 of each covered facet, [`NONE`] for the open ones.
+    under: [u32; 6],
+    /// The corners of the hex, [`NONE`] for those to be made.
+    corners: [u32; 8],
+    /// Per open facet and side: the dart across the rim, and what is wanted there; unless the side lies between open facets.
+    rim: [[u32; 4]; 6],
+    rim_want: [[f32; 4]; 6],
+}
+
+impl Covering {
+    /// The hex on the patch whose first quad and side are those of dart `d`.
+    fn new(front: &Front, d: u32, patch: Patch) -> Self {
+        let mut under = [NONE; 6];
+        under[BOTTOM] = d;
+        for &side in patch.sides() {
+            let (g, j) = ADJACENT[BOTTOM][side];
+            under[g] = turn(front.twin(turn(d, side)), 4 - j);
+        }
+        let mut this = Self { under, corners: [NONE; 8], rim: [[NONE; 4]; 6], rim_want: [[0.0; 4]; 6] };
+        for f in (0..6).filter(|&f| under[f] != NONE) {
+            for (i, &k) in FACETS[f].iter().enumerate() {
+                let at = turn(under[f], i);
+                this.corners[k] = front.origin(at);
+                let (g, j) = ADJACENT[f][i];
+                if under[g] == NONE {
+                    this.rim[g][j] = front.twin(at);
+                    this.rim_want[g][j] = if front.has_wants() { front.want(at) } else { 0.0 };
+                }
+            }
+        }
+        this
+    }
+
+    fn covered(&self) -> impl DoubleEndedIterator<Item = usize> + '_ {
+        (0..6).filter(|&f| self.under[f] != NONE)
+    }
+
+    fn open(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..6).filter(|&f| self.under[f] == NONE)
+    }
+
+    /// Whether two covered quads meet along an edge that the hex would keep.
+    fn meets_itself(&self) -> bool {
+        let slots = || self.covered().map(|f| self.under[f] / 4);
+        self.rim.iter().flatten().any(|&across| across != NONE && slots().any(|slot| slot == across / 4))
+    }
+
+    /// How far the covered edges are from the one hex they should still want.
+    fn cost(&self, front: &Front) -> f32 {
+        let mut cost = 0.0;
+        for f in self.covered() {
+            for i in (0..4).filter(|&i| f < ADJACENT[f][i].0 && self.under[ADJACENT[f][i].0] != NONE) {
+                cost += square(front.want(turn(self.under[f], i)) - 1.0);
+            }
+        }
+        cost
+    }
+
+    /// The new edges of the hex between vertices that an edge joins already; smaller vertex first.
+    fn double_edges(&self, front: &Front) -> impl Iterator<Item = [u32; 2]> {
+        EDGES.into_iter().filter_map(|[i, j]| {
+            let (a, b) = (self.corners[i], self.corners[j]);
+            let is_new = !self.covered().any(|f| holds(f, i) && holds(f, j));
+            let is_double = is_new && a != NONE && b != NONE && front.neighbours(a).binary_search(&b).is_ok();
+            is_double.then_some([a.min(b), a.max(b)])
+        })
+    }
+}
+
+/// Whether a facet has a corner.
+fn holds(facet: usize, corner: usize) -> bool {
+    FACETS[facet].contains(&corner)
 }
 
 impl Front {
@@ -73,89 +145,68 @@ impl Front {
 
     /// The hex and its open facets, before any zip.
     fn cover(&mut self, d: u32, patch: Patch, pending: &mut Pending) -> Result<(), Refused> {
-        // Dart on side 0 of each covered facet.
-        let mut under = [NONE; 6];
-        under[BOTTOM] = d;
-        for &side in patch.sides() {
-            let (g, j) = ADJACENT[BOTTOM][side];
-            under[g] = turn(self.twin(turn(d, side)), 4 - j);
+        let mut covering = Covering::new(self, d, patch);
+        if covering.meets_itself() {
+            return Err(Refused::Improper);
         }
-        let covered: Vec<usize> = (0..6).filter(|&f| under[f] != NONE).collect();
-        let open: Vec<usize> = (0..6).filter(|&f| under[f] == NONE).collect();
-        let mut slots: Vec<u32> = covered.iter().map(|&f| under[f] / 4).collect();
-        let mut corners = [NONE; 8];
-        for &f in &covered {
-            for (i, &k) in FACETS[f].iter().enumerate() {
-                corners[k] = self.origin(turn(under[f], i));
-            }
+        if self.has_wants() {
+            pending.cost += covering.cost(self);
         }
-        // What lies across the rim, and what is wanted there and within.
-        let mut rim = [[NONE; 4]; 6];
-        let mut rim_want = [[0.0; 4]; 6];
-        let wants = self.has_wants();
-        for &f in &covered {
-            for i in 0..4 {
-                let (g, j) = ADJACENT[f][i];
-                let at = turn(under[f], i);
-                if under[g] == NONE {
-                    rim[g][j] = self.twin(at);
-                    if slots.contains(&(self.twin(at) / 4)) {
-                        return Err(Refused::Improper);
-                    }
-                    if wants {
-                        rim_want[g][j] = self.want(at);
-                    }
-                } else if wants && f < g {
-                    pending.cost += square(self.want(at) - 1.0);
-                }
-            }
-        }
-        let old = corners;
-        for corner in corners.iter_mut().filter(|c| **c == NONE) {
+        pending.double.extend(covering.double_edges(self));
+        for corner in covering.corners.iter_mut().filter(|c| **c == NONE) {
             *corner = self.push_vertex();
         }
-        let holds = |f: usize, k: usize| FACETS[f].contains(&k);
-        for [i, j] in EDGES {
-            let is_new = !covered.iter().any(|&f| holds(f, i) && holds(f, j));
-            if is_new && old[i] != NONE && old[j] != NONE && self.neighbours(old[i]).binary_search(&old[j]).is_ok() {
-                pending.double.push([old[i].min(old[j]), old[i].max(old[j])]);
-            }
-        }
-        let h = self.push_hex(corners);
-        pending.hexes.push(h);
-        slots.iter().for_each(|&q| self.remove_quad(q));
+        pending.hexes.push(self.push_hex(covering.corners));
+        let slot_of = self.exchange_quads(&covering);
+        self.join_quads(&covering, &slot_of, pending);
+        self.count_corners(&covering, &slot_of, pending)
+    }
+
+    /// Takes the covered quads away and puts the open facets in their place; the slot of each.
+    fn exchange_quads(&mut self, covering: &Covering) -> [u32; 6] {
+        covering.covered().for_each(|f| self.remove_quad(covering.under[f] / 4));
+        let mut free = covering.covered().map(|f| covering.under[f] / 4).rev();
         let mut slot_of = [NONE; 6];
-        for &g in &open {
+        for g in covering.open() {
             // Seen from the void the facet runs the other way: its dart j lies on side 3 - j.
-            let quad = [0, 3, 2, 1].map(|i| corners[FACETS[g][i]]);
-            slot_of[g] = self.put_quad(slots.pop(), quad);
+            let quad = [0, 3, 2, 1].map(|i| covering.corners[FACETS[g][i]]);
+            slot_of[g] = self.put_quad(free.next(), quad);
         }
-        for &g in &open {
+        slot_of
+    }
+
+    /// Joins the open facets to each other and to what lies across the rim, and says what is wanted there.
+    fn join_quads(&mut self, covering: &Covering, slot_of: &[u32; 6], pending: &mut Pending) {
+        let wants = self.has_wants();
+        for g in covering.open() {
             for i in 0..4 {
                 let at = 4 * slot_of[g] + 3 - i as u32;
                 let (f, j) = ADJACENT[g][i];
-                if under[f] == NONE {
-                    if f < g {
-                        self.glue(at, 4 * slot_of[f] + 3 - j as u32);
-                        if wants {
-                            self.set_want(at, 3.0);
-                        }
-                    }
-                } else {
-                    self.glue(at, rim[g][i]);
+                if covering.under[f] != NONE {
+                    let across = covering.rim[g][i];
+                    self.glue(at, across);
                     if wants {
-                        self.set_want(at, rim_want[g][i] - 1.0);
-                        pending.rim.extend([at, rim[g][i]]);
+                        self.set_want(at, covering.rim_want[g][i] - 1.0);
+                        pending.rim.extend([at, across]);
+                    }
+                } else if f < g {
+                    self.glue(at, 4 * slot_of[f] + 3 - j as u32);
+                    if wants {
+                        self.set_want(at, 3.0);
                     }
                 }
             }
         }
-        for (k, &v) in corners.iter().enumerate() {
-            let gain = open.iter().filter(|&&g| holds(g, k)).count() as u32;
-            let loss = covered.iter().filter(|&&f| holds(f, k)).count() as u32;
+    }
+
+    /// Gives every corner of the hex its degree and a dart, and has it looked at.
+    fn count_corners(&mut self, covering: &Covering, slot_of: &[u32; 6], pending: &mut Pending) -> Result<(), Refused> {
+        for (k, &v) in covering.corners.iter().enumerate() {
+            let gain = covering.open().filter(|&g| holds(g, k)).count() as u32;
+            let loss = covering.covered().filter(|&f| holds(f, k)).count() as u32;
             self.set_degree(v, self.degree(v) + gain - loss);
-            let g = open.iter().find(|&&g| holds(g, k)).expect("three facets in a row leave one at every corner");
-            let at = (0..4).map(|i| 4 * slot_of[*g] + i).find(|&at| self.origin(at) == v);
+            let g = covering.open().find(|&g| holds(g, k)).expect("three facets in a row leave one at every corner");
+            let at = (0..4).map(|i| 4 * slot_of[g] + i).find(|&at| self.origin(at) == v);
             self.set_dart_of(v, at.ok_or(Refused::Improper)?);
             pending.queue.push(v);
         }

@@ -9,7 +9,9 @@
 //!
 //! The cost of a move is how far the edges it completes are from the hexes they want (`shelling.md`, section 3).
 
-use crate::void::{Void, next, opposite, prev};
+use crate::dart::{next, opposite, prev};
+use crate::pairs::Join;
+use crate::void::Void;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 /// A closed ring of distinct quads, walked so that R is on the right: the darts by which its quads are entered. Each runs
@@ -242,12 +244,10 @@ impl Rungs {
 
 /// Makes a move. False, and nothing changes, if it is not legal.
 pub(crate) fn make(void: &mut Void, the: &Move) -> bool {
-    let mark = (void.pairs.mark(), void.hexes.len(), void.n_vertices);
+    let mark = void.mark();
     let done = if the.closes { close(void, the) } else { layer(void, the) };
     if done.is_none() {
-        void.pairs.take_back(mark.0);
-        void.hexes.truncate(mark.1);
-        void.n_vertices = mark.2;
+        void.take_back(mark);
     }
     done.is_some()
 }
@@ -271,7 +271,7 @@ fn layer(void: &mut Void, the: &Move) -> Option<()> {
             if rim.contains(&quad[i]) && rim.contains(&b) {
                 let d = 4 * q as usize + i;
                 let inner = in_side[(void.twin[d] >> 2) as usize];
-                if inner && (d as u32) < void.twin[d] && void.pairs.get(top[&quad[i]], top[&b]).is_some() {
+                if inner && (d as u32) < void.twin[d] && void.pairs.join(top[&quad[i]], top[&b]).is_some() {
                     return None;
                 }
             }
@@ -280,10 +280,9 @@ fn layer(void: &mut Void, the: &Move) -> Option<()> {
     for &q in &the.side {
         let [a, b, c, d] = void.quads[q as usize];
         let hex = [top[&a], top[&b], top[&c], top[&d], a, b, c, d];
-        if !void.pairs.put_hex(&hex) {
+        if !void.push_hex(hex) {
             return None;
         }
-        void.hexes.push(hex);
     }
     let n = void.quads.len();
     let (mut quads, mut wanted, mut length) =
@@ -355,32 +354,28 @@ fn close(void: &mut Void, the: &Move) -> Option<()> {
         return None;
     }
     let rim: FxHashMap<u32, u32> = Rungs::of(void, &the.rings)?.top;
+    let mut hexes = Vec::with_capacity(the.side.len());
     for &q in &the.side {
         let [a, b, c, d] = void.quads[q as usize];
         let hex = [at[&a], at[&b], at[&c], at[&d], a, b, c, d];
         for v in [a, b, c, d] {
             // A vertical edge that is no rung is new.
-            let is_new =
-                !rim.contains_key(&v) && void.pairs.get(v, at[&v]).is_some_and(|k| k != crate::kinds::Kind::Edge);
+            let is_new = !rim.contains_key(&v) && void.pairs.join(v, at[&v]).is_some_and(|join| join != Join::Edge);
             if is_new || v == at[&v] {
                 return None;
             }
         }
-        void.hexes.push(hex);
+        hexes.push(hex);
     }
     // Verticals first seen as edges of other cells would join two fans of hexes.
     let mut columns: Vec<[u32; 2]> =
         at.iter().filter(|(v, _)| !rim.contains_key(v)).map(|(&v, &w)| [v.min(w), v.max(w)]).collect();
     columns.sort_unstable();
-    if columns.iter().any(|&[v, w]| void.pairs.get(v, w).is_some()) {
+    if columns.iter().any(|&[v, w]| void.pairs.join(v, w).is_some()) {
         return None;
     }
-    let first = void.hexes.len() - the.side.len();
-    for i in first..void.hexes.len() {
-        let hex = void.hexes[i];
-        if !void.pairs.put_hex(&hex) {
-            return None;
-        }
+    if !hexes.into_iter().all(|hex| void.push_hex(hex)) {
+        return None;
     }
     void.set_front(Vec::new(), Vec::new(), Vec::new())
 }

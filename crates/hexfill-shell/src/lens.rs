@@ -9,7 +9,8 @@
 //! arc is longer than the number of vertices inside. Hence looking `limit` quads far from every corner finds every minimal lens of at most
 //! `limit` vertices. Minimal lenses have a triangle at an arc (Steinitz' lemma; Chang, Erickson, "Untangling planar curves", 2017).
 
-use crate::front::{Front, next, opposite, prev};
+use crate::dart::{next, opposite, prev};
+use crate::front::Front;
 
 /// Marks that are wiped by taking the next stamp.
 #[derive(Clone, Debug, Default)]

@@ -1,8 +1,9 @@
 //! Shelling: closed quad surfaces of any size swept inward by their own dual curves, until nothing is left to fill.
 //!
 //! Two engines. By layers: `angles` what every edge wants -> `compress` parallel chords become one -> `solve` layers and
-//! closings (`layer`) on the void (`void`, `kinds`) -> `lift` back to the fine surface. By flips: `front` (`pairs`) what is
-//! left -> `lens` the smallest lens of its dual -> `zip` flips that empty it -> `sweep` until nothing is left.
+//! closings (`layer`) on the void (`void`) -> `lift` back to the fine surface. By flips: `front` what is left -> `lens` the
+//! smallest lens of its dual -> `zip` flips that empty it -> `sweep` until nothing is left. Both know by a pair table (`pairs`)
+//! what is joined already.
 //! Before them: `plug` cuts handles, `bridge` joins cavities to the outside. Without any sweep: `polycube`, `between`.
 
 mod angles;
@@ -12,19 +13,18 @@ mod boundary_layers;
 mod bridge;
 mod close;
 mod compress;
+mod dart;
 mod develop;
 mod deviation;
 mod front;
 mod glue;
 mod inside;
-mod kinds;
 mod layer;
 mod lens;
 mod lift;
 mod pairs;
 mod plug;
 mod polycube;
-mod residual;
 mod shell;
 mod solve;
 mod split_star;

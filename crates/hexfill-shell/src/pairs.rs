@@ -7,6 +7,7 @@
 
 use hexfill_mesh::cube::{BODY_DIAGONALS, EDGES, FACET_DIAGONALS};
 use rustc_hash::FxHashMap;
+use std::collections::hash_map::Entry;
 
 /// What joins two vertices.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -76,23 +77,26 @@ impl PairTable {
         if a == b {
             return false;
         }
-        let key = key(a, b);
-        let before = self.0.get(&key).copied();
-        let count = match before {
-            None => 1,
-            Some(p) if p.join != join => return false,
-            Some(p) => p.count + 1,
-        };
         let most = match join {
             Join::Edge => u32::MAX,
             Join::Diagonal(..) => 2,
             Join::Body => 1,
         };
-        if count > most {
-            return false;
+        let key = key(a, b);
+        match self.0.entry(key) {
+            Entry::Vacant(free) => {
+                old((key, None));
+                free.insert(Pair { join, count: 1 });
+            }
+            Entry::Occupied(mut there) => {
+                let before = *there.get();
+                if before.join != join || before.count >= most {
+                    return false;
+                }
+                old((key, Some(before)));
+                there.get_mut().count += 1;
+            }
         }
-        old((key, before));
-        self.0.insert(key, Pair { join, count });
         true
     }
 

@@ -9,7 +9,8 @@
 //! themselves, which no flip can undo; so among all rings and quadrangulations that plug is taken that leaves the fewest self-crossings (measured
 //! essential), then the fewest hexes.
 
-use crate::front::{Front, NONE, next, opposite, prev};
+use crate::dart::{next, opposite, prev};
+use crate::front::{Front, NONE};
 use crate::inside::{centroid_is_inside, fan_is_inside};
 use rustc_hash::FxHashMap;
 

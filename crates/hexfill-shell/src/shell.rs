@@ -8,7 +8,6 @@ use crate::deviation::{Deviation, deviation};
 use crate::front::Front;
 use crate::lift::lift;
 use crate::polycube::polycube;
-use crate::residual::fill_residual;
 use crate::solve::solve;
 use crate::stir::stir_front;
 use crate::sweep::{SweepOptions, sweep_front};
@@ -371,5 +370,5 @@ fn close_residual(front: &Front, ctx: &Context<'_>) -> Vec<Hexes> {
     let mut stirred = front.clone();
     let options = SweepOptions { atlas: Some(Atlas::embedded()), ..SweepOptions::default() };
     stir_front(&mut stirred, STIRRING, &options, ctx);
-    [fill_residual(front, ctx), fill_residual(&stirred, ctx)].into_iter().flatten().collect()
+    [front.closed(ctx), stirred.closed(ctx)].into_iter().flatten().map(|state| state.hexes().to_vec()).collect()
 }

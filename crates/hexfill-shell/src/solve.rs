@@ -4,8 +4,9 @@
 //! by a random factor; what comes out is ranked by (cost, hexes after lifting, number of the restart), so the result does
 //! not depend on the number of threads.
 
+use crate::dart::{next, prev};
 use crate::layer::{Move, Places, Ring, consider, make, rings};
-use crate::void::{Void, next, prev};
+use crate::void::Void;
 use hexfill_mesh::{Context, Random};
 use rayon::prelude::*;
 use rustc_hash::FxHashSet;

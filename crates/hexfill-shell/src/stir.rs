@@ -6,7 +6,8 @@
 //! emptying the lenses it brought, and kept if quads + self-crossings become fewer. Where none helps, some are made at random, and it starts again;
 //! after half of the rounds behind a pillow.
 
-use crate::front::{Front, Mark, NONE, opposite};
+use crate::dart::opposite;
+use crate::front::{Front, Mark, NONE};
 use crate::glue::Patch;
 use crate::sweep::SweepOptions;
 use crate::sweeper::Sweeper;

@@ -5,9 +5,9 @@
 //! and at last the atlas. On spheres whose chords are simple the sweep alone closes the void.
 
 use crate::front::{Front, NONE};
-use crate::inside::determinant;
 use crate::stir::stir_front;
 use crate::sweeper::Sweeper;
+use hexfill_geometry::cone;
 use hexfill_mesh::{Context, QuadId, QuadSurface, StopReason};
 use hexfill_search::Atlas;
 
@@ -149,8 +149,7 @@ pub fn sweep_front(front: &mut Front, options: &SweepOptions<'_>, ctx: &Context<
 fn all_face_outward(surface: &QuadSurface, points: &[[f64; 3]]) -> bool {
     let mut volume = vec![0.0; surface.n_components()];
     for (q, quad) in surface.quads().iter().enumerate() {
-        let [a, b, c, d] = quad.map(|v| points[v.index()]);
-        volume[surface.component(QuadId::new(q))] += [[a, b, c], [a, c, d]].map(determinant).iter().sum::<f64>();
+        volume[surface.component(QuadId::new(q))] += cone(quad.map(|v| points[v.index()]));
     }
     volume.into_iter().all(|v| v > 0.0)
 }

@@ -10,7 +10,8 @@
 //! Where wants are stated (see `zip`), a lens is first emptied by flips that cost next to nothing, and single such flips are made though they empty
 //! no lens; only then come all others, smallest lens first, and in it the flip that costs least.
 
-use crate::front::{Front, Mark, next, opposite};
+use crate::dart::{next, opposite};
+use crate::front::{Front, Mark};
 use crate::glue::Patch;
 use crate::lens::{LensFinder, Stamps};
 use crate::sweep::SweepOptions;

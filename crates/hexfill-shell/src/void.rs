@@ -5,8 +5,9 @@
 //! edge. Darts are `4 * quad + side`.
 
 use crate::compress::Coarse;
+use crate::dart::next;
 use crate::front::Front;
-use crate::kinds::PairKinds;
+use crate::pairs::{OldPair, PairTable};
 use hexfill_mesh::cube::EDGES;
 use rustc_hash::FxHashMap;
 
@@ -27,22 +28,16 @@ pub(crate) struct Void {
     /// Vertices below this lie on the surface.
     pub n_surface: u32,
     pub hexes: Vec<[u32; 8]>,
-    pub pairs: PairKinds,
+    pub pairs: PairTable,
+    /// The pairs that changed since [`mark`](Self::mark).
+    journal: Vec<OldPair>,
 }
 
-#[inline]
-pub(crate) fn next(d: u32) -> u32 {
-    (d & !3) | ((d + 1) & 3)
-}
-
-#[inline]
-pub(crate) fn prev(d: u32) -> u32 {
-    (d & !3) | ((d + 3) & 3)
-}
-
-#[inline]
-pub(crate) fn opposite(d: u32) -> u32 {
-    d ^ 2
+/// What a move starts from, to come back to where it is not legal.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Mark {
+    n_hexes: usize,
+    n_vertices: u32,
 }
 
 impl Void {
@@ -50,9 +45,9 @@ impl Void {
     pub fn new(coarse: &Coarse) -> Self {
         let surface = &coarse.surface;
         let quads: Vec<[u32; 4]> = surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
-        let mut pairs = PairKinds::default();
-        for &quad in &quads {
-            pairs.put_quad(quad);
+        let mut pairs = PairTable::default();
+        for quad in &quads {
+            pairs.add_quad(quad);
         }
         Self {
             twin: surface.darts().map(|d| surface.twin(d).0).collect(),
@@ -62,6 +57,7 @@ impl Void {
             n_surface: surface.n_vertices() as u32,
             hexes: Vec::new(),
             pairs,
+            journal: Vec::new(),
             quads,
         }
     }
@@ -95,7 +91,7 @@ impl Void {
             self.hexes.push([a, b, c, d, outer[0], outer[1], outer[2], outer[3]]);
         }
         for hex in &self.hexes[self.hexes.len() - self.quads.len()..] {
-            let fits = self.pairs.put_hex(hex);
+            let fits = self.pairs.add_hex(hex, |_| ());
             debug_assert!(fits, "a pillow is proper with everything");
         }
         for w in &mut self.wanted {
@@ -133,7 +129,7 @@ impl Void {
             for [i, j] in EDGES {
                 *placed.entry(key(hex[i], hex[j])).or_insert(0.0) += 1.0;
             }
-            if !void.pairs.put_hex(hex) {
+            if !void.pairs.add_hex(hex, |_| ()) {
                 return None;
             }
         }
@@ -150,6 +146,28 @@ impl Void {
         let length = vec![1; 4 * quads.len()];
         void.set_front(quads, left, length)?;
         Some(void)
+    }
+
+    /// Adds a hex; false if a pair of its vertices has another kind already.
+    pub fn push_hex(&mut self, hex: [u32; 8]) -> bool {
+        self.hexes.push(hex);
+        let journal = &mut self.journal;
+        self.pairs.add_hex(&hex, |old| journal.push(old))
+    }
+
+    /// A state to come back to, before the first hex of a move; the one before loses its meaning.
+    pub fn mark(&mut self) -> Mark {
+        self.journal.clear();
+        Mark { n_hexes: self.hexes.len(), n_vertices: self.n_vertices }
+    }
+
+    /// Takes the hexes and vertices since the last mark back.
+    pub fn take_back(&mut self, mark: Mark) {
+        while let Some(old) = self.journal.pop() {
+            self.pairs.restore(old);
+        }
+        self.hexes.truncate(mark.n_hexes);
+        self.n_vertices = mark.n_vertices;
     }
 
     /// Replaces the front. `edges` has for every dart of the new quads what is wanted there and its length.

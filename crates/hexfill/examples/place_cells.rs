@@ -9,7 +9,7 @@
 use hexfill::Context;
 use hexfill::construct::{Cell, Pattern, Role, Side};
 use hexfill::embed::{Embedding, Objective, Options, embed, star_bounds};
-use hexfill_mesh::HexMesh;
+use hexfill_mesh::{HexMesh, Random};
 use std::time::{Duration, Instant};
 
 type Point = [f64; 3];
@@ -68,20 +68,12 @@ fn position(role: Role, pattern: &Pattern, p: &Parameters) -> Point {
     }
 }
 
-/// Two numbers a call, normally distributed (SplitMix64, Box and Muller).
-struct Normal(u64);
+/// Numbers that are normally distributed (Box and Muller).
+struct Normal(Random);
 
 impl Normal {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-
     fn next(&mut self) -> f64 {
-        (-2.0 * (1.0 - self.unit()).ln()).sqrt() * (std::f64::consts::TAU * self.unit()).cos()
+        (-2.0 * (1.0 - self.0.unit()).ln()).sqrt() * (std::f64::consts::TAU * self.0.unit()).cos()
     }
 
     fn child(&mut self, parent: &Parameters, free: &[usize], width: f64) -> Parameters {
@@ -107,7 +99,7 @@ fn place(cell: &Cell, time: Duration, sides: &[f64]) -> Option<(Parameters, f64,
         stars.map_or(-1.0, |stars| stars.iter().map(|s| s.bound).fold(1.0, f64::min))
     };
     let free: Vec<usize> = (sides.len()..START.len()).filter(|&i| is_free(&cell.pattern, i)).collect();
-    let mut normal = Normal(0);
+    let mut normal = Normal(Random::new(0));
     let mut parent = START;
     parent[..sides.len()].copy_from_slice(sides);
     let (mut best, mut width) = (bound(&parent), 0.1);

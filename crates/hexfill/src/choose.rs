@@ -7,7 +7,8 @@
 use crate::fill::{FillError, FillOptions, FillResult, Filled, Route, Strategy, construct, search, shelled, verify};
 use crate::geometry::{Placed, place, place_as_it_is, place_best, place_points};
 use crate::last_resort::{LastResort, leaving_time};
-use crate::placed_fill::{PlaceOptions, PlacedFill, no_room};
+use crate::no_room::no_room;
+use crate::placed_fill::{PlaceOptions, PlacedFill};
 use crate::problem::Problem;
 use hexfill_embed::quick_star_bound;
 use hexfill_mesh::{Context, StopReason};

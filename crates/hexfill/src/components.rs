@@ -5,26 +5,17 @@ use crate::fill::{FillError, FillOptions, FillResult, Filled, Route, check_filla
 use crate::last_resort::LastResort;
 use crate::problem::Problem;
 use hexfill_embed::tutte_start;
+use hexfill_geometry::halves;
 use hexfill_mesh::{Context, HexMesh, QuadId, QuadSurface, StopReason, VertexId};
 
 /// Which other components each component lies in: an even number for an outer boundary, an odd one for the boundary of a cavity. Exact for
 /// disjoint closed surfaces; whatever the rounding says where surfaces cross.
 fn holders(surface: &QuadSurface, points: &[[f64; 3]]) -> Vec<Vec<usize>> {
-    let n = surface.n_components();
-    let mut representative = vec![None; n];
-    let mut quads_of: Vec<Vec<[VertexId; 4]>> = vec![Vec::new(); n];
+    let mut triangles: Vec<Vec<[[f64; 3]; 3]>> = vec![Vec::new(); surface.n_components()];
     for (q, quad) in surface.quads().iter().enumerate() {
-        let c = surface.component(QuadId::new(q));
-        representative[c].get_or_insert(quad[0]);
-        quads_of[c].push(*quad);
+        triangles[surface.component(QuadId::new(q))].extend(halves(quad.map(|v| points[v.index()])));
     }
-    let inside = |v: VertexId, quads: &[[VertexId; 4]]| winding(points[v.index()], quads, points).abs() > 0.5;
-    (0..n)
-        .map(|c| {
-            let v = representative[c].expect("a component has quads");
-            (0..n).filter(|&other| other != c && inside(v, &quads_of[other])).collect()
-        })
-        .collect()
+    hexfill_geometry::holders(&triangles)
 }
 
 /// How many other components each component lies in: 0 for an outer boundary, 1 for the boundary of a cavity, 2 for an
@@ -62,27 +53,6 @@ fn part(surface: &QuadSurface, components: &[usize]) -> (QuadSurface, Vec<Vertex
     }
     let part = QuadSurface::try_new(old.len(), &quads).expect("components of a surface are a surface");
     (part, old.into_iter().map(VertexId).collect())
-}
-
-/// Winding number of a closed surface about a point: solid angles of its triangles over 4 pi (van Oosterom and Strackee 1983).
-fn winding(at: [f64; 3], quads: &[[VertexId; 4]], points: &[[f64; 3]]) -> f64 {
-    let largest = points.iter().flatten().fold(1e-300f64, |m, x| m.max(x.abs()));
-    let to = |v: VertexId| [0, 1, 2].map(|k| points[v.index()][k] / largest - at[k] / largest);
-    let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    let angle = |a: [f64; 3], b: [f64; 3], c: [f64; 3]| {
-        let [la, lb, lc] = [a, b, c].map(|p| dot(p, p).sqrt());
-        let det = a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0])
-            + a[2] * (b[0] * c[1] - b[1] * c[0]);
-        2.0 * det.atan2(la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb)
-    };
-    let total: f64 = quads
-        .iter()
-        .map(|q| {
-            let [a, b, c, d] = q.map(to);
-            angle(a, b, c) + angle(a, c, d)
-        })
-        .sum();
-    total / (4.0 * std::f64::consts::PI)
 }
 
 /// Fills solids that lie apart, each for itself, and puts the meshes side by side. Of each the smallest mesh is taken.
@@ -141,30 +111,12 @@ pub(crate) fn fill_apart(
 mod tests {
     use super::*;
     use crate::fill::fill;
-    use hexfill_mesh::generate::voxel_surface;
 
-    /// The boundary of filled cells with its positions: a vertex is known by the cells' corners.
+    /// The boundary of filled cells with its positions.
     fn voxels(size: [usize; 3], filled: impl Fn([usize; 3]) -> bool) -> Problem {
-        use hexfill_mesh::cube::{FACETS, POSITIONS};
-        let surface = voxel_surface(size, &filled).unwrap();
-        let inside = |p: [i64; 3]| (0..3).all(|k| (0..size[k] as i64).contains(&p[k])) && filled(p.map(|x| x as usize));
-        let mut points = vec![[f64::NAN; 3]; surface.n_vertices()];
-        let mut quads = surface.quads().iter();
-        for i in 0..size[0] * size[1] * size[2] {
-            let cell = [i % size[0], i / size[0] % size[1], i / size[0] / size[1]].map(|x| x as i64);
-            for (f, facet) in FACETS.iter().enumerate().filter(|_| inside(cell)) {
-                let mut beside = cell;
-                beside[f / 2] += if f % 2 == 0 { -1 } else { 1 };
-                if !inside(beside) {
-                    let quad = quads.next().unwrap();
-                    for (v, &k) in quad.iter().zip(facet) {
-                        points[v.index()] = [0, 1, 2].map(|c| (cell[c] + i64::from(POSITIONS[k][c])) as f64);
-                    }
-                }
-            }
-        }
+        let (surface, points) = hexfill_mesh::generate::voxels(size, filled).unwrap();
         let mut problem = Problem::from_surface("voxels", surface);
-        problem.points = Some(points);
+        problem.points = Some(points.into_iter().map(|p| p.map(f64::from)).collect());
         problem
     }
 

@@ -175,6 +175,9 @@ fn positions_or_none(
     }
 }
 
+/// An embedding that is told to stop at once still smooths and judges meshes of so few hexes in a moment.
+const QUICK: usize = 10_000;
+
 /// Positions by the embedding, or to start from.
 fn positions(
     filled: &Filled,
@@ -182,8 +185,8 @@ fn positions(
     options: Option<&hexfill_embed::Options>,
     ctx: &Context<'_>,
 ) -> Result<(Vec<[f64; 3]>, Option<EmbedReport>), EmbedError> {
-    // Out of time, what is known stays as it is.
-    let is_late = ctx.stop().is_some() && filled.start.is_some();
+    // Out of time, a large mesh stays as it is.
+    let is_late = ctx.stop().is_some() && filled.start.is_some() && filled.mesh.n_hexes() > QUICK;
     Ok(match options.filter(|_| !is_late) {
         Some(options) => {
             let made = embed(&filled.mesh, boundary, filled.start.as_deref(), options, ctx)?;

@@ -18,6 +18,7 @@ mod components;
 mod fill;
 mod geometry;
 mod last_resort;
+mod no_room;
 mod placed_fill;
 mod placement;
 mod problem;

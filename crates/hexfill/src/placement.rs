@@ -6,6 +6,7 @@
 //! and a congruence of the positions carry one to the other (double cosets).
 
 use hexfill_embed::star_bounds;
+use hexfill_geometry::{norm, sub};
 use hexfill_mesh::{
     HexMesh, QuadSurface, SurfaceAutomorphism, VertexId, hex_automorphisms, hex_symmetry_order, surface_automorphisms,
     surface_symmetry_order,
@@ -70,10 +71,7 @@ fn is_congruence(turn: &SurfaceAutomorphism, points: &[[f64; 3]]) -> bool {
     let n = turn.vertices.len().min(points.len());
     let largest = points.iter().flatten().fold(f64::MIN_POSITIVE, |m, x| m.max(x.abs()));
     let at = |v: usize| points[v].map(|x| x / largest);
-    let distance = |v: usize, w: usize| {
-        let (p, q) = (at(v), at(w));
-        (0..3).map(|k| (p[k] - q[k]).powi(2)).sum::<f64>().sqrt()
-    };
+    let distance = |v: usize, w: usize| norm(sub(at(v), at(w)));
     let image = |v: usize| turn.vertices[v].index();
     (0..n).all(|v| (0..v).all(|w| (distance(v, w) - distance(image(v), image(w))).abs() <= TOLERANCE))
 }

@@ -2,6 +2,7 @@
 
 use crate::catalog;
 use crate::components::depths;
+use hexfill_geometry::{cone, sub};
 use hexfill_io::{Format, MeshData, ReadError};
 use hexfill_mesh::{Offenders, QuadSurface, SignatureError, SurfaceError, parse_surface_signature};
 use std::path::Path;
@@ -207,17 +208,14 @@ fn enclosed_volumes(surface: &QuadSurface, points: &[[f64; 3]]) -> Vec<f64> {
     let largest = points.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
     let scale = if largest > 0.0 { largest } else { 1.0 };
     let at = |v: hexfill_mesh::VertexId| points[v.index()].map(|x| x / scale);
-    let det = |o: [f64; 3], a: [f64; 3], b: [f64; 3], c: [f64; 3]| {
-        let [a, b, c] = [a, b, c].map(|p| [p[0] - o[0], p[1] - o[1], p[2] - o[2]]);
-        a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0])
-    };
     let mut origin = vec![None; surface.n_components()];
     let mut volume = vec![0.0; surface.n_components()];
     for (q, quad) in surface.quads().iter().enumerate() {
         let component = surface.component(hexfill_mesh::QuadId::new(q));
-        let [a, b, c, d] = quad.map(at);
-        let o = *origin[component].get_or_insert(a);
-        volume[component] += det(o, a, b, c) + det(o, a, c, d) + det(o, a, b, d) + det(o, b, c, d);
+        let quad = quad.map(at);
+        let origin = *origin[component].get_or_insert(quad[0]);
+        let [a, b, c, d] = quad.map(|p| sub(p, origin));
+        volume[component] += cone([a, b, c, d]) + cone([b, c, d, a]);
     }
     volume
 }

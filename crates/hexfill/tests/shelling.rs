@@ -1,40 +1,12 @@
 //! Shelling from the surface to certified coordinates: what users of real surfaces get.
 
 use hexfill::{BoundaryLayers, Context, FillOptions, PlaceOptions, Problem, Route, Strategy, fill_placed};
-use hexfill_mesh::QuadSurface;
-use hexfill_mesh::generate::voxel_surface;
 
-type Points = Vec<[f64; 3]>;
-
-/// Where the vertices of a voxel surface lie: they are numbered by first use, cell by cell, as `voxel_surface` does.
-fn voxel_points(size: [usize; 3], filled: &dyn Fn([usize; 3]) -> bool) -> Points {
-    let mut seen = std::collections::BTreeMap::new();
-    let mut points = Vec::new();
-    let inside = |p: [i64; 3]| (0..3).all(|k| p[k] >= 0 && (p[k] as usize) < size[k]) && filled(p.map(|x| x as usize));
-    for z in 0..size[2] as i64 {
-        for y in 0..size[1] as i64 {
-            for x in 0..size[0] as i64 {
-                for (side, facet) in hexfill_mesh::cube::FACETS.iter().enumerate() {
-                    let mut other = [x, y, z];
-                    other[side / 2] += if side % 2 == 0 { -1 } else { 1 };
-                    if !inside([x, y, z]) || inside(other) {
-                        continue;
-                    }
-                    for &corner in facet {
-                        let p = hexfill_mesh::cube::POSITIONS[corner].map(i64::from);
-                        let at = [x + p[0], y + p[1], z + p[2]];
-                        seen.entry(at).or_insert_with(|| points.push(at.map(|c| c as f64)));
-                    }
-                }
-            }
-        }
-    }
-    points
-}
-
-fn problem(surface: QuadSurface, points: Points) -> Problem {
+/// The boundary of filled cells with its positions.
+fn voxels(size: [usize; 3], filled: impl Fn([usize; 3]) -> bool) -> Problem {
+    let (surface, points) = hexfill_mesh::generate::voxels(size, filled).unwrap();
     let mut problem = Problem::from_surface("test", surface);
-    problem.points = Some(points);
+    problem.points = Some(points.into_iter().map(|p| p.map(f64::from)).collect());
     problem
 }
 
@@ -63,11 +35,10 @@ fn voxel_solids_are_their_voxels() {
         ([3, 3, 3], |p| p != [1, 1, 1], 26),
         ([4, 3, 4], |[x, _, z]| z <= x, 30),
     ];
-    for (size, is_filled, voxels) in solids {
-        let surface = voxel_surface(size, is_filled).unwrap();
-        let problem = problem(surface, voxel_points(size, &is_filled));
+    for (size, is_filled, cells) in solids {
+        let problem = voxels(size, is_filled);
         let (hexes, worst, _) = filled(&problem, &FillOptions::default());
-        assert_eq!(hexes, voxels, "{size:?}");
+        assert_eq!(hexes, cells, "{size:?}");
         assert!(worst > 1.0 - 1e-9, "{size:?}: {worst}");
     }
 }
@@ -90,8 +61,7 @@ fn real_surfaces_get_a_few_good_hexes_a_quad_for_any_number_of_threads() {
 
 #[test]
 fn boundary_layers_lie_under_the_whole_surface() {
-    let surface = voxel_surface([2, 2, 2], |_| true).unwrap();
-    let problem = problem(surface, voxel_points([2, 2, 2], &|_| true));
+    let problem = voxels([2, 2, 2], |_| true);
     let layers = BoundaryLayers { count: 3, height: Some(0.05), growth: 1.5 };
     let options = FillOptions { layers: Some(layers), strategy: Strategy::Shell, ..FillOptions::default() };
     let (hexes, worst, _) = filled(&problem, &options);
@@ -116,7 +86,7 @@ fn a_cancelled_shelling_returns_nothing_or_a_mesh() {
 
 #[test]
 fn where_no_mesh_can_be_valid_it_is_said_what_was_tried() {
-    let mut problem = problem(voxel_surface([3, 3, 3], |_| true).unwrap(), voxel_points([3, 3, 3], &|_| true));
+    let mut problem = voxels([3, 3, 3], |_| true);
     // A corner of the box onto the line between two of its neighbours: the quad is straight there, and no star is perfect.
     let points = problem.points.as_mut().unwrap();
     let corner = points.iter().position(|p| *p == [0.0; 3]).unwrap();

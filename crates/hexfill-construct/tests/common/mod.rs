@@ -3,7 +3,7 @@
 
 use hexfill_check::{Judged, Level, judge};
 use hexfill_construct::Construction;
-use hexfill_mesh::generate::{torus, voxel_surface};
+use hexfill_mesh::generate::torus;
 use hexfill_mesh::{Context, QuadSurface};
 
 pub type Points = Vec<[f64; 3]>;
@@ -27,32 +27,10 @@ pub fn check(surface: &QuadSurface, made: &Construction) {
     }
 }
 
-/// The boundary of the filled cells of a grid, with positions (numbered as the generator does: by first use).
+/// The boundary of the filled cells of a grid, with positions.
 pub fn voxels(size: [usize; 3], filled: impl Fn([usize; 3]) -> bool) -> (QuadSurface, Points) {
-    use hexfill_mesh::cube::{FACETS, POSITIONS};
-    let inside = |p: [i64; 3]| (0..3).all(|k| (0..size[k] as i64).contains(&p[k])) && filled(p.map(|x| x as usize));
-    let mut points: Points = Vec::new();
-    let mut known = std::collections::BTreeSet::new();
-    for z in 0..size[2] as i64 {
-        for y in 0..size[1] as i64 {
-            for x in (0..size[0] as i64).filter(|&x| inside([x, y, z])) {
-                for (f, facet) in FACETS.iter().enumerate() {
-                    let mut beside = [x, y, z];
-                    beside[f / 2] += if f % 2 == 0 { -1 } else { 1 };
-                    for k in facet.iter().filter(|_| !inside(beside)) {
-                        let p = POSITIONS[*k];
-                        let p = [x + i64::from(p[0]), y + i64::from(p[1]), z + i64::from(p[2])];
-                        if known.insert(p) {
-                            points.push(p.map(|x| x as f64));
-                        }
-                    }
-                }
-            }
-        }
-    }
-    let surface = voxel_surface(size, filled).unwrap();
-    assert_eq!(points.len(), surface.n_vertices());
-    (surface, points)
+    let (surface, points) = hexfill_mesh::generate::voxels(size, filled).unwrap();
+    (surface, points.into_iter().map(|p| p.map(f64::from)).collect())
 }
 
 /// A plate with `genus` square holes, its cells cut into `fineness`^3, and single voxels taken out of its inside.
@@ -155,19 +133,8 @@ pub fn bulged((surface, points): (QuadSurface, Points)) -> (QuadSurface, Points)
     (surface, points.collect())
 }
 
-/// The vertices and faces of an OBJ file.
+/// The vertices and quads of an OBJ file.
 pub fn read_obj(text: &str) -> (QuadSurface, Points) {
-    let (mut points, mut faces) = (Vec::new(), Vec::new());
-    for line in text.lines() {
-        let words: Vec<&str> = line.split_whitespace().collect();
-        match words.first() {
-            Some(&"v") => points.push([1, 2, 3].map(|k| words[k].parse::<f64>().unwrap())),
-            Some(&"f") => {
-                let index = |w: &&str| w.split('/').next().unwrap().parse::<u32>().unwrap() - 1;
-                faces.push(words[1..].iter().map(index).collect::<Vec<u32>>());
-            }
-            _ => {}
-        }
-    }
-    (QuadSurface::try_from_polygons(points.len(), &faces).unwrap(), points)
+    let data = hexfill_io::read_from(text.as_bytes(), hexfill_io::Format::Obj, "surface").unwrap();
+    (data.quad_surface().unwrap(), data.points)
 }

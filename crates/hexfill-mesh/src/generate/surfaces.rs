@@ -67,35 +67,44 @@ pub fn torus(n: u32, m: u32, shift: u32) -> Result<QuadSurface, SurfaceError> {
 /// # Errors
 /// [`SurfaceError`]: no cell filled, or cells that touch along an edge or at a point only (non-manifold).
 pub fn voxel_surface(size: [usize; 3], filled: impl Fn([usize; 3]) -> bool) -> Result<QuadSurface, SurfaceError> {
-    let inside = |p: [i64; 3]| {
-        let within = (0..3).all(|k| p[k] >= 0 && p[k] < size[k] as i64);
+    voxels(size, filled).map(|(surface, _)| surface)
+}
+
+/// [`voxel_surface`], and the grid point of every vertex.
+///
+/// # Errors
+/// As [`voxel_surface`].
+pub fn voxels(
+    size: [usize; 3],
+    filled: impl Fn([usize; 3]) -> bool,
+) -> Result<(QuadSurface, Vec<[i32; 3]>), SurfaceError> {
+    let inside = |p: [i32; 3]| {
+        let within = (0..3).all(|k| p[k] >= 0 && (p[k] as usize) < size[k]);
         within && filled(p.map(|x| x as usize))
     };
     let mut ids = FxHashMap::default();
-    let mut quads = Vec::new();
-    for z in 0..size[2] as i64 {
-        for y in 0..size[1] as i64 {
-            for x in 0..size[0] as i64 {
-                if !inside([x, y, z]) {
-                    continue;
-                }
-                for (side, facet) in FACETS.iter().enumerate() {
-                    let mut other = [x, y, z];
-                    other[side / 2] += if side % 2 == 0 { -1 } else { 1 };
-                    if inside(other) {
-                        continue;
-                    }
-                    quads.push(facet.map(|corner| {
-                        let p = POSITIONS[corner];
-                        let point = [x + i64::from(p[0]), y + i64::from(p[1]), z + i64::from(p[2])];
-                        let next = ids.len() as u32;
-                        *ids.entry(point).or_insert(next)
-                    }));
-                }
+    let (mut points, mut quads) = (Vec::new(), Vec::new());
+    for i in 0..size[0] * size[1] * size[2] {
+        let cell = [i % size[0], i / size[0] % size[1], i / size[0] / size[1]].map(|x| x as i32);
+        if !inside(cell) {
+            continue;
+        }
+        for (side, facet) in FACETS.iter().enumerate() {
+            let mut other = cell;
+            other[side / 2] += if side % 2 == 0 { -1 } else { 1 };
+            if inside(other) {
+                continue;
             }
+            quads.push(facet.map(|corner| {
+                let point: [i32; 3] = std::array::from_fn(|k| cell[k] + i32::from(POSITIONS[corner][k]));
+                *ids.entry(point).or_insert_with(|| {
+                    points.push(point);
+                    points.len() as u32 - 1
+                })
+            }));
         }
     }
-    QuadSurface::try_new(ids.len(), &quads)
+    Ok((QuadSurface::try_new(points.len(), &quads)?, points))
 }
 
 /// A plate of `(2 genus + 1) x 3` cells with `genus` square holes, each cell cut into `fineness`^3 voxels: a surface of that genus.

@@ -164,6 +164,18 @@ impl LiveMesh {
         }
     }
 
+    /// Takes hexes out.
+    fn remove(&mut self, hexes: &[u32]) {
+        // In descending order, so that ids come back in ascending order.
+        let mut order = hexes.to_vec();
+        order.sort_unstable_by(|a, b| b.cmp(a));
+        for h in order {
+            self.unlink(h);
+            self.hexes[h as usize] = [NONE; 8];
+            self.free_hexes.push(h);
+        }
+    }
+
     /// Takes the hexes `removed` out and puts `added` in their place. Both are balls with the same boundary quads; vertex ids
     /// of `added` from `first_new` on stand for new vertices. Returns the ids of the new hexes.
     pub(crate) fn exchange(&mut self, removed: &[u32], added: &[[u32; 8]], first_new: u32) -> Vec<u32> {
@@ -181,14 +193,7 @@ impl LiveMesh {
         let mut old_vertices: Vec<u32> = removed.iter().flat_map(|&h| *self.hex(h)).collect();
         old_vertices.sort_unstable();
         old_vertices.dedup();
-        // In descending order, so that ids come back in ascending order.
-        let mut order = removed.to_vec();
-        order.sort_unstable_by(|a, b| b.cmp(a));
-        for h in order {
-            self.unlink(h);
-            self.hexes[h as usize] = [NONE; 8];
-            self.free_hexes.push(h);
-        }
+        self.remove(removed);
         let mut new_vertices: Vec<u32> = Vec::new();
         let mut ids = Vec::with_capacity(added.len());
         for hex in added {
@@ -250,13 +255,7 @@ impl LiveMesh {
                 }
             }
         }
-        let mut order = removed.to_vec();
-        order.sort_unstable_by(|a, b| b.cmp(a));
-        for h in order {
-            self.unlink(h);
-            self.hexes[h as usize] = [NONE; 8];
-            self.free_hexes.push(h);
-        }
+        self.remove(removed);
         for &[from, to] in merges {
             let hexes: Vec<u32> = self.hexes_at(from).collect();
             for h in hexes {

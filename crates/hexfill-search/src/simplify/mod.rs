@@ -29,7 +29,7 @@ use collapse::collapse_live;
 pub use collapse::{Collapse, collapse};
 use hexfill_mesh::{Context, HexMesh, StopReason, VertexId};
 use live::{LiveMesh, NONE};
-use offer::{Offer, Random, Search, Worker};
+use offer::{Offer, Search, Worker, sequence};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, OnceLock};
@@ -334,7 +334,7 @@ fn offers(
             if i as u64 >= size {
                 return;
             }
-            let mut random = Random::new(ctx.seed, first + i as u64);
+            let mut random = sequence(ctx.seed, first + i as u64);
             let mut seed = NONE;
             while seed == NONE || !live.is_alive(seed) {
                 seed = random.below(live.n_hex_slots()) as u32;

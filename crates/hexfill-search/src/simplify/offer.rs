@@ -12,29 +12,12 @@ use crate::cavity::{Cavity, MAX_VERTICES, Pairs};
 use crate::grow::class_hash;
 use crate::simplify::live::LiveMesh;
 use crate::simplify::region::Region;
+use hexfill_mesh::Random;
 use rustc_hash::FxHashMap;
 
-/// SplitMix64 (Steele, Lea, Flood 2014): one stream per seed of a region.
-pub(crate) struct Random(u64);
-
-impl Random {
-    pub(crate) fn new(seed: u64, stream: u64) -> Self {
-        let mut random = Self(seed ^ stream.wrapping_mul(0xD129_0B26_88EA_5F4D));
-        random.0 = random.next();
-        random
-    }
-
-    pub(crate) fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
-
-    pub(crate) fn below(&mut self, n: usize) -> usize {
-        ((u128::from(self.next()) * n as u128) >> 64) as usize
-    }
+/// The sequence of one seed of a region.
+pub(crate) fn sequence(seed: u64, stream: u64) -> Random {
+    Random::new(Random::new(seed ^ stream.wrapping_mul(0xD129_0B26_88EA_5F4D)).next_u64())
 }
 
 /// A filling ready to be placed.

@@ -74,7 +74,7 @@ fn deformed([x, y, z]: Point) -> Point {
     [x + 0.25 * (0.6 * y + 0.4 * z).sin(), y + 0.25 * (0.5 * z + 0.3 * x).sin(), z + 0.2 * (0.5 * x - 0.4 * y).cos()]
 }
 
-/// All solids by name.
+/// All solids by name. A table, a line or two each: it is read by looking up, so it stays in one piece.
 pub fn all() -> Vec<(&'static str, Solid)> {
     let square = |n: usize, a: f64| Section::rectangle([n, n], [a, a]);
     let l_cells: Vec<[i32; 2]> = (0..36).map(|i| [i % 6, i / 6]).filter(|&[x, y]| x < 2 || y < 2).collect();
