@@ -91,15 +91,36 @@ pub fn check_output(output: &str, to: Option<Format>) -> Result<()> {
     check_folder(output)
 }
 
-/// Refuses a path in a folder that does not exist.
-pub fn check_folder(output: &str) -> Result<()> {
-    let folder = Path::new(output).parent().filter(|p| !p.as_os_str().is_empty());
-    match folder {
-        Some(folder) if !folder.is_dir() => {
-            bail!("{output}: the folder {} does not exist; create it first", folder.display())
-        }
-        _ => Ok(()),
+/// Refuses the path of a mesh before any work is done. `surface`: its boundary.
+pub fn check_mesh_output(output: &str, to: Option<Format>, surface: &MeshData) -> Result<()> {
+    let path = Path::new(output);
+    let format = to.map_or_else(|| Format::from_path(path), Ok)?;
+    if !format.holds_cells() {
+        bail!(
+            "{output}: {} cannot hold hexahedra; use a mesh format such as .vtk, .vtu, .mesh or .msh",
+            format.title()
+        );
     }
+    Ok(hexfill::io::check_path(path, to, surface)?)
+}
+
+/// Refuses a path that cannot be written: a folder, or in a folder that does not exist or takes no files.
+pub fn check_folder(output: &str) -> Result<()> {
+    // Through a symbolic link to the file it names, as it is written.
+    let target = std::fs::canonicalize(output).unwrap_or_else(|_| Path::new(output).to_owned());
+    if target.is_dir() {
+        bail!("{output} is a folder; give the name of a file in it");
+    }
+    let folder = target.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    if !folder.is_dir() {
+        bail!("{output}: the folder {} does not exist; create it first", folder.display());
+    }
+    // Files appear by way of a temporary one beside them; devices and pipes are written directly.
+    if !target.exists() || target.is_file() {
+        let refused = || format!("{output}: the folder {} takes no files", folder.display());
+        tempfile::Builder::new().prefix(".hexfill-").tempfile_in(folder).with_context(refused)?;
+    }
+    Ok(())
 }
 
 /// Refuses to read and write, or to write twice, the same file. `-` is never the same.

@@ -21,8 +21,8 @@ use std::time::Duration;
 /// A surface is a file (OBJ, OFF, PLY, VTK, VTU, MEDIT, MSH, INP, OVM, JSON, each also .gz or .zst), `-` for stdin (with
 /// --from), a catalogue name such as :schneiders-pyramid, or a signature printed by `hexfill info`.
 ///
-/// Exit codes: 0 done and verified, 1 the answer is "no", 2 bad usage or input, 3 stopped by a limit or signal (best
-/// result and checkpoint written), 70 internal error.
+/// Exit codes: 0 done and verified, 1 the answer is "no", 2 bad usage or input, 3 stopped by a limit or signal before
+/// the work was done (best result and checkpoint written), 70 internal error.
 #[derive(Parser)]
 #[command(name = "hexfill", version, max_term_width = 110)]
 struct Cli {

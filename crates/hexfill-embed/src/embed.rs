@@ -77,7 +77,7 @@ pub fn embed(
 pub fn tutte_start(mesh: &HexMesh, boundary_points: &[[f64; 3]]) -> Result<Vec<[f64; 3]>, EmbedError> {
     let normal = Normal::new(mesh, boundary_points, None)?;
     let mut points = normal.points.clone();
-    tutte::place(&normal.problem, &mut points, 0.0, false, &mut Random::of_task(0, 0));
+    tutte::place(&normal.problem, &mut points, 0.0, false, &mut Random::of_task(0, 0), &Context::default());
     Ok(normal.restore(&points))
 }
 
@@ -91,7 +91,7 @@ pub fn tutte_start(mesh: &HexMesh, boundary_points: &[[f64; 3]]) -> Result<Vec<[
 pub fn star_bounds(mesh: &HexMesh, boundary_points: &[[f64; 3]]) -> Result<Vec<StarBound>, EmbedError> {
     let normal = Normal::new(mesh, boundary_points, None)?;
     let mut points = normal.points.clone();
-    tutte::place(&normal.problem, &mut points, 0.0, false, &mut Random::of_task(0, 0));
+    tutte::place(&normal.problem, &mut points, 0.0, false, &mut Random::of_task(0, 0), &Context::default());
     let mut stars = star::bounds(&normal.problem, &normal.points);
     star::refine(&mut stars, &points, &Context::default());
     Ok(stars.into_iter().map(|s| s.bound).collect())
@@ -422,13 +422,13 @@ impl Search<'_> {
             Some(start) if number == 0 => {
                 points.copy_from_slice(start);
                 if self.options.smooth_start {
-                    tutte::place(problem, &mut points, 0.0, true, &mut Random::of_task(0, 0));
+                    tutte::place(problem, &mut points, 0.0, true, &mut Random::of_task(0, 0), context);
                 }
             }
             given => {
                 let plain = number == u32::from(given.is_some());
                 let mut random = Random::of_task(context.seed, u64::from(number));
-                tutte::place(problem, &mut points, if plain { 0.0 } else { 1.0 }, false, &mut random);
+                tutte::place(problem, &mut points, if plain { 0.0 } else { 1.0 }, false, &mut random, context);
             }
         }
         let n_hexes = problem.hexes.len();

@@ -5,8 +5,8 @@
 
 use crate::problem::{Problem, add_long, dot_long, fill};
 use crate::vector::Vector;
-use hexfill_mesh::Random;
 use hexfill_mesh::cube::EDGES;
+use hexfill_mesh::{Context, Random};
 
 /// Neighbours and weights of the free vertices, row by row.
 struct Laplacian {
@@ -77,7 +77,15 @@ impl Laplacian {
 }
 
 /// Places the free vertices of `points`; with `is_guess` they start from where they are. Variables that no path of edges joins to a fixed vertex stay where they are.
-pub(crate) fn place(problem: &Problem, points: &mut [Vector], spread: f64, is_guess: bool, random: &mut Random) {
+/// Told to stop, it leaves them on the way.
+pub(crate) fn place(
+    problem: &Problem,
+    points: &mut [Vector],
+    spread: f64,
+    is_guess: bool,
+    random: &mut Random,
+    context: &Context<'_>,
+) {
     let laplacian = Laplacian::new(problem, spread, random);
     let n = problem.free.len();
     // The centre of the fixed points is a better first guess than the origin.
@@ -90,14 +98,20 @@ pub(crate) fn place(problem: &Problem, points: &mut [Vector], spread: f64, is_gu
             row.filter(|(v, _)| problem.slot[*v as usize] as usize >= n).map(|&(v, w)| w * points[v as usize][k]).sum()
         });
         let guess = problem.free.iter().map(|&v| if is_guess { points[v as usize][k] } else { centre }).collect();
-        let x = conjugate_gradients(problem, &laplacian, &right, guess);
+        let x = conjugate_gradients(problem, &laplacian, &right, guess, context);
         for (s, &v) in problem.free.iter().enumerate() {
             points[v as usize][k] = x[s];
         }
     }
 }
 
-fn conjugate_gradients(problem: &Problem, laplacian: &Laplacian, right: &[f64], guess: Vec<f64>) -> Vec<f64> {
+fn conjugate_gradients(
+    problem: &Problem,
+    laplacian: &Laplacian,
+    right: &[f64],
+    guess: Vec<f64>,
+    context: &Context<'_>,
+) -> Vec<f64> {
     let n = right.len();
     let mut x = guess;
     let mut applied = vec![0.0; n];
@@ -109,7 +123,7 @@ fn conjugate_gradients(problem: &Problem, laplacian: &Laplacian, right: &[f64], 
     let mut rz = dot_long(&residual, &z);
     let enough = 1e-20 * dot_long(right, &precondition(right)).max(f64::MIN_POSITIVE);
     for _ in 0..2000.min(4 * n + 10) {
-        if rz <= enough {
+        if rz <= enough || context.stop().is_some() {
             break;
         }
         laplacian.apply(problem, &p, &mut applied);

@@ -33,7 +33,7 @@ mod write;
 pub use data::{MeshData, OtherFace};
 pub use error::{Place, Position, ReadError, WriteError};
 pub use format::{Compression, Format, FormatError};
-pub use save::{Encoding, write_path, write_path_with, write_to, write_to_with};
+pub use save::{Encoding, check_path, write_path, write_path_with, write_to, write_to_with};
 
 use formats::{inp, json, medit, msh, obj, off, ovm, ply, vtk, vtu};
 use source::Source;

@@ -31,6 +31,14 @@ pub fn write_path(path: &Path, format: Option<Format>, data: &MeshData) -> Resul
     write_path_with(path, format, data, Encoding::Text)
 }
 
+/// Refuses what [`write_path`] would refuse before it writes: formats that are not known, or that have no place for the mesh.
+///
+/// # Errors
+/// [`WriteError`].
+pub fn check_path(path: &Path, format: Option<Format>, data: &MeshData) -> Result<(), WriteError> {
+    check(format.map_or_else(|| by_extension(path), Ok)?, data, Encoding::Text)
+}
+
 /// [`write_path`] with a choice of encoding.
 ///
 /// # Errors
@@ -41,10 +49,7 @@ pub fn write_path_with(
     data: &MeshData,
     encoding: Encoding,
 ) -> Result<(), WriteError> {
-    let format = match format {
-        Some(format) => format,
-        None => by_extension(path)?,
-    };
+    let format = format.map_or_else(|| by_extension(path), Ok)?;
     check(format, data, encoding)?;
     let failed = |source| WriteError::Io { file: path.display().to_string(), source };
     save(path, format, data, encoding).map_err(failed)

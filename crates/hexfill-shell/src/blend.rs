@@ -3,6 +3,7 @@
 //! The inside of every block is the transfinite interpolation of its facets, theirs that of their edges (Gordon, Hall 1973).
 //! Where the surface is a box that is exact; elsewhere it is a first guess for smoothing.
 
+use hexfill_mesh::Context;
 use hexfill_mesh::cube::EDGES;
 use rustc_hash::FxHashMap;
 
@@ -12,11 +13,12 @@ type Point = [f64; 3];
 const SWEEPS: usize = 300;
 
 /// Positions of the coarse vertices that `fixed` does not know: each at the mean of its neighbours, weighted by how short the
-/// edge to them is in fine edges.
+/// edge to them is in fine edges. Told to stop, it leaves them on the way.
 pub(crate) fn springs(
     hexes: &[[u32; 8]],
     segments: &FxHashMap<[u32; 2], u32>,
     fixed: &dyn Fn(u32) -> Option<Point>,
+    ctx: &Context<'_>,
 ) -> FxHashMap<u32, Point> {
     let mut edges: Vec<[u32; 2]> =
         hexes.iter().flat_map(|h| EDGES.map(|[i, j]| [h[i].min(h[j]), h[i].max(h[j])])).collect();
@@ -47,7 +49,7 @@ pub(crate) fn springs(
             moved = (0..3).map(|k| (mean[k] - at[i][k]).abs()).fold(moved, f64::max);
             at[i] = mean;
         }
-        if moved == 0.0 {
+        if moved == 0.0 || ctx.stop().is_some() {
             break;
         }
     }

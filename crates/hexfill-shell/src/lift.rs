@@ -6,6 +6,7 @@
 
 use crate::blend::{blend_block, springs};
 use crate::compress::Coarse;
+use hexfill_mesh::Context;
 use hexfill_mesh::cube::{EDGES, FACETS, POSITIONS};
 use rustc_hash::FxHashMap;
 
@@ -30,13 +31,14 @@ pub(crate) fn lift(
     n_fine: u32,
     points: Option<&[[f64; 3]]>,
     hexes: &[[u32; 8]],
+    ctx: &Context<'_>,
 ) -> Result<Lifted, MultiplicityClash> {
     let segments = segments(coarse, hexes)?;
     let mut lattice = Lattice::new(coarse, n_fine);
     let (mut fine, mut before) = (Vec::new(), Vec::with_capacity(hexes.len() + 1));
     let mut guess = points.map(<[_]>::to_vec);
     let at_fixed = |v: u32| points.and_then(|p| coarse.vertices.get(v as usize).map(|fine| p[fine.index()]));
-    let corners = points.map(|_| springs(hexes, &segments, &at_fixed));
+    let corners = points.map(|_| springs(hexes, &segments, &at_fixed, ctx));
     for hex in hexes {
         let sizes = AXES.map(|[i, j]| segments[&pair(hex[i], hex[j])]);
         let [a, b, c] = sizes.map(|s| s as usize);

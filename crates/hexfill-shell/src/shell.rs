@@ -104,12 +104,15 @@ pub fn shell(
     let mut keeper = Keeper { surface, points, coarse: &coarse, fine: &fine, options, shelling };
     for &pillows in &options.pillows {
         if let (0, Some(hexes)) = (pillows, &cells) {
-            keeper.keep(&fine, 0, vec![Glued::at_once("grid", hexes.clone())]);
+            keeper.keep(&fine, 0, vec![Glued::at_once("grid", hexes.clone())], ctx);
             keeper.shelling.left = 0;
             if keeper.shelling.meshes.iter().any(|m| m.cost < PERFECT) {
                 // All edges bend by right angles: nothing is better than the cells of the grid.
                 break;
             }
+        }
+        if ctx.stop().is_some() {
+            break;
         }
         if surface.n_components() > 1 {
             keeper.sweep_several(pillows, ctx);
@@ -134,7 +137,7 @@ impl Keeper<'_> {
     /// Sweeps a surface of one component: compressed, and as it is where handles are cut or compression left nothing that closes.
     fn sweep_one(&mut self, pillows: u32, ctx: &Context<'_>) {
         let meshes = Start::new(self.coarse, pillows).complete(self.options, &mut self.shelling.left, ctx);
-        let found = self.keep(self.coarse, pillows, meshes);
+        let found = self.keep(self.coarse, pillows, meshes, ctx);
         if self.surface.n_quads() > MOST_FINE || ctx.stop().is_some() {
             return;
         }
@@ -144,7 +147,7 @@ impl Keeper<'_> {
             _ if found == 0 && is_compressed => {
                 let start = Start::new(self.fine, pillows);
                 let meshes = start.by_flips(self.options, &[], &mut self.shelling.left, ctx);
-                self.keep(self.fine, pillows, meshes);
+                self.keep(self.fine, pillows, meshes, ctx);
             }
             _ => (),
         }
@@ -158,7 +161,7 @@ impl Keeper<'_> {
         if pillows == 0
             && let Some(hexes) = between(self.surface, given)
         {
-            self.keep(self.fine, 0, vec![Glued::at_once("columns", hexes)]);
+            self.keep(self.fine, 0, vec![Glued::at_once("columns", hexes)], ctx);
             self.shelling.left = 0;
         }
         self.sweep_cut_open(given, pillows, ctx);
@@ -169,12 +172,12 @@ impl Keeper<'_> {
     fn sweep_cut_open(&mut self, given: &[[f64; 3]], pillows: u32, ctx: &Context<'_>) {
         if let Some(start) = Start::new(self.fine, pillows).cut_open(given, self.surface, pillows) {
             let meshes = start.complete(self.options, &mut self.shelling.left, ctx);
-            self.keep(self.fine, pillows, meshes);
+            self.keep(self.fine, pillows, meshes, ctx);
         }
     }
 
     /// Lifts those meshes of `coarse` that no other beats in both cost and hexes, and keeps them; returns how many.
-    fn keep(&mut self, coarse: &Coarse, pillows: u32, meshes: Vec<Glued>) -> usize {
+    fn keep(&mut self, coarse: &Coarse, pillows: u32, meshes: Vec<Glued>, ctx: &Context<'_>) -> usize {
         let before = self.shelling.meshes.len();
         let mut measured: Vec<(Deviation, Glued)> =
             meshes.into_iter().filter_map(|m| deviation(coarse, &m.hexes).map(|d| (d, m))).collect();
@@ -191,15 +194,15 @@ impl Keeper<'_> {
         let wanted = n.min(self.options.candidates);
         for i in (0..wanted).map(|i| if wanted == 1 { 0 } else { i * (n - 1) / (wanted - 1) }) {
             let (d, glued) = &measured[i];
-            let lifted = self.lifted(coarse, glued, d.cost, pillows);
+            let lifted = self.lifted(coarse, glued, d.cost, pillows, ctx);
             self.shelling.meshes.extend(lifted);
         }
         self.shelling.meshes.len() - before
     }
 
     /// The mesh of the surface that a coarse mesh becomes; `None` if it does not lift.
-    fn lifted(&self, coarse: &Coarse, glued: &Glued, cost: f32, pillows: u32) -> Option<Shelled> {
-        let lifted = lift(coarse, self.surface.n_vertices() as u32, self.points, &glued.hexes).ok()?;
+    fn lifted(&self, coarse: &Coarse, glued: &Glued, cost: f32, pillows: u32, ctx: &Context<'_>) -> Option<Shelled> {
+        let lifted = lift(coarse, self.surface.n_vertices() as u32, self.points, &glued.hexes, ctx).ok()?;
         let mesh = HexMesh::try_new(lifted.n_vertices as usize, &lifted.hexes).ok()?;
         let mut before = 0;
         let mut stages = Vec::new();

@@ -6,6 +6,7 @@
 
 use crate::fill::{FillError, FillOptions, FillResult, Filled, Route, Strategy, construct, search, shelled, verify};
 use crate::geometry::{Placed, place, place_as_it_is, place_best, place_points};
+use crate::last_resort::{LastResort, leaving_time};
 use crate::no_room::no_room;
 use crate::placed_fill::{PlaceOptions, PlacedFill};
 use crate::problem::Problem;
@@ -78,10 +79,12 @@ pub(crate) fn fill_best(
     ctx: &Context<'_>,
 ) -> Result<PlacedFill, FillError> {
     let result = FillResult { meshes: Vec::new(), stop: StopReason::Finished, tried: Vec::new() };
-    let mut trial = Trial { problem, options, boundary, how, ctx, embed, result, best: None, seen: Vec::new() };
+    let early = leaving_time(problem, options, ctx);
+    let mut trial = Trial { problem, options, boundary, how, ctx, early, embed, result, best: None, seen: Vec::new() };
     trial.look_up()?;
     trial.shell()?;
     let why_none = trial.go_on()?;
+    trial.resort()?;
     trial.polish();
     let layered = trial.cut_layers()?;
     Ok(trial.finish(why_none, layered))
@@ -94,6 +97,8 @@ struct Trial<'a> {
     boundary: &'a [[f64; 3]],
     how: &'a PlaceOptions,
     ctx: &'a Context<'a>,
+    /// For engines that may find nothing.
+    early: Context<'a>,
     embed: &'a hexfill_embed::Options,
     /// What the engines say; their meshes stay here until they are considered.
     result: FillResult,
@@ -114,7 +119,7 @@ impl<'a> Trial<'a> {
 
     /// Shells the surface.
     fn shell(&mut self) -> Result<(), FillError> {
-        for filled in shelled(self.problem, self.options, self.ctx, &mut self.result)? {
+        for filled in shelled(self.problem, self.options, &self.early, &mut self.result)? {
             if self.ctx.stop().is_some() && self.best.is_some() {
                 break;
             }
@@ -148,10 +153,19 @@ impl<'a> Trial<'a> {
         Ok(why_none)
     }
 
+    /// Constructs the surface if the work was stopped before there was a mesh.
+    fn resort(&mut self) -> Result<(), FillError> {
+        if self.best.is_none() {
+            LastResort::default().fill(self.problem, self.options, self.ctx, &mut self.result)?;
+            self.consider_found()?;
+        }
+        Ok(())
+    }
+
     /// Fills by inward flips over so many cavities.
     fn flip_inward(&mut self, inward_cavities: u64) -> Result<(), FillError> {
         let inward = FillOptions { inward_cavities, ..self.options.clone() };
-        search(&self.problem.surface, &inward, self.ctx, &mut self.result)?;
+        search(&self.problem.surface, &inward, &self.early, &mut self.result)?;
         self.consider_found()
     }
 
@@ -162,7 +176,10 @@ impl<'a> Trial<'a> {
         }
         let more = FillOptions { count: MORE_FILLINGS, ..self.options.clone() };
         let mut found = FillResult { meshes: Vec::new(), stop: StopReason::Finished, tried: Vec::new() };
-        search(&self.problem.surface, &more, self.ctx, &mut found)?;
+        search(&self.problem.surface, &more, &self.early, &mut found)?;
+        if found.stop != StopReason::Finished {
+            self.result.stop = found.stop;
+        }
         self.result.tried.push(format!("{} fillings", found.meshes.len()));
         let mut embed = *self.embed;
         if embed.starts == 0 {

@@ -2,10 +2,11 @@
 //! outward with the cavities in it; an island in a cavity is a solid of its own.
 
 use crate::fill::{FillError, FillOptions, FillResult, Filled, Route, check_fillable, fill_component};
+use crate::last_resort::LastResort;
 use crate::problem::Problem;
 use hexfill_embed::tutte_start;
 use hexfill_geometry::halves;
-use hexfill_mesh::{Context, HexMesh, QuadId, QuadSurface, VertexId};
+use hexfill_mesh::{Context, HexMesh, QuadId, QuadSurface, StopReason, VertexId};
 
 /// Which other components each component lies in: an even number for an outer boundary, an odd one for the boundary of a cavity. Exact for
 /// disjoint closed surfaces; whatever the rounding says where surfaces cross.
@@ -61,12 +62,13 @@ pub(crate) fn fill_apart(
     options: &FillOptions,
     ctx: &Context<'_>,
 ) -> Result<FillResult, FillError> {
-    let mut result = FillResult { meshes: Vec::new(), stop: hexfill_mesh::StopReason::Finished, tried: Vec::new() };
+    let mut result = FillResult { meshes: Vec::new(), stop: StopReason::Finished, tried: Vec::new() };
     let one = FillOptions { count: 1, growth_log: None, ..options.clone() };
     let mut hexes = Vec::new();
     let mut n_vertices = problem.surface.n_vertices() as u32;
     let mut route = Route::Atlas;
     let mut start = problem.points.clone();
+    let mut last_resort = LastResort::default();
     for (c, solid) in solids.iter().enumerate() {
         let (surface, vertices) = part(&problem.surface, solid);
         let mut part = Problem::from_surface(&format!("component {c} of {}", problem.name), surface);
@@ -74,8 +76,11 @@ pub(crate) fn fill_apart(
         // A whole with an even number of quads can have parts with odd numbers.
         check_fillable(&part.surface)?;
         let mut made = fill_component(&part, &one, ctx)?;
+        last_resort.fill(&part, &one, ctx, &mut made)?;
         result.tried.extend(made.tried.drain(..).map(|t| format!("component {c}: {t}")));
-        result.stop = made.stop;
+        if result.stop == StopReason::Finished {
+            result.stop = made.stop;
+        }
         let Some(filled) = made.meshes.pop() else { return Ok(result) };
         let n_part = part.surface.n_vertices();
         let first = n_vertices;

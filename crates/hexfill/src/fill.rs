@@ -3,6 +3,7 @@
 use crate::choose::Prefer;
 use crate::components::{fill_apart, solids};
 use crate::geometry::boundary_points;
+use crate::last_resort::{LastResort, leaving_time};
 use crate::problem::Problem;
 use crate::simplify::simplify_construction;
 use hexfill_check::{Judged, Level, judge};
@@ -227,6 +228,9 @@ pub fn check_fillable(surface: &QuadSurface) -> Result<(), FillError> {
 /// Fills the surface of a problem. Every mesh returned has passed levels 1 to 3 of the judge, its boundary being the
 /// surface. An empty list means: none found within the bounds, which proves nothing.
 ///
+/// Told to stop by the context, it returns the best so far. If there is none, the surface is constructed if the strategy allows it and
+/// that takes no more than a second; else the list is empty.
+///
 /// # Errors
 /// [`FillError`].
 pub fn fill(problem: &Problem, options: &FillOptions, ctx: &Context<'_>) -> Result<FillResult, FillError> {
@@ -237,10 +241,13 @@ pub fn fill(problem: &Problem, options: &FillOptions, ctx: &Context<'_>) -> Resu
         result.meshes.iter().try_for_each(|m| verify(&problem.surface, &m.mesh, m.route))?;
         return Ok(result);
     }
-    fill_component(problem, options, ctx)
+    let mut result = fill_component(problem, options, ctx)?;
+    LastResort::default().fill(problem, options, ctx, &mut result)?;
+    Ok(result)
 }
 
-/// Fills one component, or several at once where one lies in another. The caller has checked that it is fillable.
+/// Fills one component, or several at once where one lies in another. The caller has checked that it is fillable, and turns to the
+/// [`LastResort`] if the work was stopped before there was a mesh.
 pub(crate) fn fill_component(
     problem: &Problem,
     options: &FillOptions,
@@ -260,6 +267,7 @@ pub(crate) fn fill_component(
         });
     }
     let mut result = FillResult { meshes: Vec::new(), stop: StopReason::Finished, tried: Vec::new() };
+    let early = leaving_time(problem, options, ctx);
     let by_atlas = matches!(options.strategy, Strategy::Auto | Strategy::Atlas);
     let by_shelling = matches!(options.strategy, Strategy::Auto | Strategy::Shell);
     if small && by_atlas {
@@ -269,15 +277,15 @@ pub(crate) fn fill_component(
         } else {
             options.inward_cavities
         };
-        search(surface, &FillOptions { inward_cavities: cavities, ..options.clone() }, ctx, &mut result)?;
+        search(surface, &FillOptions { inward_cavities: cavities, ..options.clone() }, &early, &mut result)?;
     }
-    if result.meshes.len() < options.count && by_shelling && ctx.stop().is_none() {
-        for filled in shelled(problem, options, ctx, &mut result)? {
+    if result.meshes.len() < options.count && by_shelling && early.stop().is_none() {
+        for filled in shelled(problem, options, &early, &mut result)? {
             accept(surface, filled, options, &mut result)?;
         }
     }
-    if small && result.meshes.is_empty() && options.strategy == Strategy::Auto && ctx.stop().is_none() {
-        search(surface, options, ctx, &mut result)?;
+    if small && result.meshes.is_empty() && options.strategy == Strategy::Auto && early.stop().is_none() {
+        search(surface, options, &early, &mut result)?;
     }
     let may_construct = matches!(options.strategy, Strategy::Auto | Strategy::Construct);
     if result.meshes.is_empty() && may_construct && ctx.stop().is_none() {
@@ -303,9 +311,13 @@ pub(crate) fn shelled(
         how.pillows = vec![1];
     }
     let made = shell(&problem.surface, points.as_deref(), &how, ctx);
+    result.stop = ctx.stop().unwrap_or(result.stop);
     result.tried.push(made.to_string());
     let mut meshes = Vec::new();
     for shelled in made.meshes {
+        if ctx.stop().is_some() && !meshes.is_empty() {
+            break;
+        }
         if shelled.mesh.n_hexes() as u64 <= u64::from(options.max_hexes) {
             verify(&problem.surface, &shelled.mesh, Route::Shelling)?;
             meshes.push(Filled {
@@ -336,6 +348,9 @@ pub(crate) fn search(
         beam: options.beam,
     };
     let outcome = fill_from_atlas(surface, atlas, &inward, ctx).expect("the caller checked: a small sphere");
+    if outcome.stop != StopReason::Finished {
+        result.stop = outcome.stop;
+    }
     result.tried.push(format!("atlas of {} states, inward flips over {} cavities", atlas.n_states(), outcome.cavities));
     for filling in outcome.fillings {
         let route = if filling.glued == 0 { Route::Atlas } else { Route::InwardFlips };

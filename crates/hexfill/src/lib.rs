@@ -17,6 +17,7 @@ mod choose;
 mod components;
 mod fill;
 mod geometry;
+mod last_resort;
 mod no_room;
 mod placed_fill;
 mod placement;

@@ -82,6 +82,7 @@ pub fn fill_placed(
             .collect(),
     };
     let meshes = placed.into_iter().map(|(filled, placed)| (filled, Some(placed))).collect();
+    let stop = if stop == StopReason::Finished { ctx.stop().unwrap_or(stop) } else { stop };
     Ok(PlacedFill { meshes, stop, tried, choice })
 }
 

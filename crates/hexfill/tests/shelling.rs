@@ -78,7 +78,8 @@ fn a_cancelled_shelling_returns_nothing_or_a_mesh() {
     let ctx = Context { cancel: Some(&cancel), ..Context::default() };
     let mut how = PlaceOptions::default();
     how.embed = Some(hexfill::embed::Options::default());
-    let made = fill_placed(&problem, &FillOptions::default(), &how, &ctx).unwrap();
+    let only = FillOptions { strategy: Strategy::Shell, ..FillOptions::default() };
+    let made = fill_placed(&problem, &only, &how, &ctx).unwrap();
     assert_eq!(made.stop, hexfill::StopReason::Cancelled);
     assert!(made.meshes.is_empty());
 }

@@ -6,11 +6,11 @@ use crate::exit::Exit;
 use crate::files;
 use anyhow::bail;
 use hexfill::construct::{CellChoice, GivenTets, TetgenTets};
-use hexfill::io::Format;
+use hexfill::io::{Format, MeshData};
 use hexfill::search::{Atlas, GrowOptions};
 use hexfill::{
     BoundaryLayers, Context, FillOptions, FillReport, Filled, GeometryReport, InteriorFrom, PlaceOptions, Placed,
-    Problem, StopReason, Strategy,
+    PlacedFill, Problem, StopReason, Strategy,
 };
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -150,7 +150,10 @@ struct MeshOutput {
 #[derive(Serialize)]
 struct Output {
     meshes: Vec<MeshOutput>,
+    /// Why the work ended.
     stopped: &'static str,
+    /// As the process returns it.
+    exit_code: u8,
     seconds: f64,
     notes: Vec<String>,
     /// Why this mesh and no other, if there was a choice.
@@ -160,6 +163,69 @@ struct Output {
 /// Fills, judges, writes, reports.
 pub fn run(args: &FillArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
     let start = Instant::now();
+    check_files(args, console)?;
+    let problem = files::load_problem(&args.surface, args.from)?;
+    for note in &problem.notes {
+        console.note(note);
+    }
+    if let Some(output) = &args.output {
+        files::check_mesh_output(output, args.to, &boundary_data(&problem))?;
+    }
+    let own_log = args.growth_log.is_none().then(|| default_log(args)).flatten();
+    let options = fill_options(args, own_log.clone(), ctx)?;
+    let mut how = PlaceOptions::default();
+    how.embed = (!args.no_embed).then(hexfill::embed::Options::default);
+    how.best = args.best_of.is_some();
+    how.limit = args.embed_limit;
+    let result = hexfill::fill_placed(&problem, &options, &how, ctx)?;
+    let mut output = Output {
+        meshes: Vec::new(),
+        stopped: crate::commands::atlas::stop_word(result.stop),
+        exit_code: Exit::of_stop(result.stop, Exit::No) as u8,
+        seconds: start.elapsed().as_secs_f64(),
+        notes: problem.notes.clone(),
+        choice: result.choice.clone(),
+    };
+    if result.meshes.is_empty() {
+        output.notes.clone_from(&result.tried);
+        if console.json {
+            console.print_json(&output)?;
+        }
+        say_none(&result, options.growth_log.as_deref(), console);
+        return Ok(Exit::of_stop(result.stop, Exit::No));
+    }
+    if let Some(log) = own_log.filter(|log| log.exists()) {
+        std::fs::remove_file(log)?;
+    }
+    if problem.points.is_none() && result.meshes[0].1.is_some() {
+        console.note("the surface has no coordinates; those of its canonical polyhedron are used");
+    }
+    let mut all_valid = true;
+    for (i, (filled, placed)) in result.meshes.iter().enumerate() {
+        let report = FillReport::new(&problem, filled, &result.tried);
+        let valid = args.no_embed || placed.as_ref().is_none_or(Placed::is_certified);
+        all_valid &= valid;
+        let mut mesh = MeshOutput { report, geometry: placed.as_ref().map(Placed::report), files: Vec::new() };
+        if valid || !args.require_valid {
+            let suffix = (args.count > 1).then_some(i + 1);
+            mesh.files = write_mesh(args, &problem, filled, placed.as_ref(), suffix, console)?;
+        }
+        output.meshes.push(mesh);
+    }
+    let enough = output.meshes.len() == args.count as usize;
+    let exit = Exit::of_stop(result.stop, if all_valid && enough { Exit::Done } else { Exit::No });
+    output.exit_code = exit as u8;
+    output.seconds = start.elapsed().as_secs_f64();
+    if console.json {
+        console.print_json(&output)?;
+    } else {
+        say(&output, args, console);
+    }
+    Ok(exit)
+}
+
+/// Refuses files that cannot be written, or would be written twice, before any work is done.
+fn check_files(args: &FillArgs, console: &Console) -> anyhow::Result<()> {
     if let Some(output) = &args.output {
         files::check_output(output, args.to)?;
     }
@@ -178,13 +244,21 @@ pub fn run(args: &FillArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Res
         .chain(written.into_iter().flatten())
         .map(String::as_str)
         .collect();
-    files::check_distinct(&named)?;
-    let problem = files::load_problem(&args.surface, args.from)?;
-    for note in &problem.notes {
-        console.note(note);
+    files::check_distinct(&named)
+}
+
+/// What is known of the mesh before there is one: its boundary. A sphere without positions will get some.
+fn boundary_data(problem: &Problem) -> MeshData {
+    let mut data = problem.data();
+    if problem.points.is_none() && problem.surface.is_sphere() {
+        (data.has_coordinates, data.points) = (true, vec![[0.0; 3]; problem.surface.n_vertices()]);
     }
-    let own_log = args.growth_log.is_none().then(|| default_log(args)).flatten();
-    let options = FillOptions {
+    data
+}
+
+/// What the flags mean.
+fn fill_options(args: &FillArgs, own_log: Option<PathBuf>, ctx: &Context<'_>) -> anyhow::Result<FillOptions> {
+    Ok(FillOptions {
         strategy: match args.strategy {
             StrategyArg::Auto => Strategy::Auto,
             StrategyArg::Shell => Strategy::Shell,
@@ -195,7 +269,7 @@ pub fn run(args: &FillArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Res
         count: args.best_of.unwrap_or(args.count) as usize,
         improve: args.improve,
         atlas: args.atlas.as_deref().map(Atlas::read_path).transpose()?.map(Arc::new),
-        growth_log: args.growth_log.clone().or_else(|| own_log.clone()),
+        growth_log: args.growth_log.clone().or(own_log),
         inward_cavities: args.inward_cavities,
         beam: usize::try_from(args.beam).unwrap_or(usize::MAX),
         interior: interior(args)?,
@@ -214,68 +288,22 @@ pub fn run(args: &FillArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Res
         },
         layers: args.layers.map(|count| BoundaryLayers { count, height: args.layer_height, growth: args.growth }),
         growth: GrowOptions { cap: args.cap, width: args.width.max(1) },
-    };
-    let mut how = PlaceOptions::default();
-    how.embed = (!args.no_embed).then(hexfill::embed::Options::default);
-    how.best = args.best_of.is_some();
-    how.limit = args.embed_limit;
-    let result = hexfill::fill_placed(&problem, &options, &how, ctx)?;
-    if result.meshes.is_empty() {
-        if console.json {
-            console.print_json(&Output {
-                meshes: Vec::new(),
-                stopped: crate::commands::atlas::stop_word(result.stop),
-                seconds: start.elapsed().as_secs_f64(),
-                notes: result.tried.clone(),
-                choice: None,
-            })?;
+    })
+}
+
+/// The report for a person where there is no mesh.
+fn say_none(result: &PlacedFill, growth_log: Option<&Path>, console: &Console) {
+    for tried in &result.tried {
+        console.say(format!("tried: {tried}"));
+    }
+    console.say("no mesh found within the bounds, which does not mean that none exists");
+    match (result.stop, growth_log) {
+        (StopReason::Finished, _) => console.say("raise --max-hexes, --cap or --width, or use --strategy auto"),
+        (_, Some(log)) if log.exists() => {
+            console.say(format!("stopped; the same command goes on from {}", log.display()));
         }
-        for tried in &result.tried {
-            console.say(format!("tried: {tried}"));
-        }
-        console.say("no mesh found within the bounds, which does not mean that none exists");
-        match (result.stop, &options.growth_log) {
-            (StopReason::Finished, _) => console.say("raise --max-hexes, --cap or --width, or use --strategy auto"),
-            (_, Some(log)) if log.exists() => {
-                console.say(format!("stopped; the same command goes on from {}", log.display()));
-            }
-            _ => console.say("stopped before the search was done"),
-        }
-        return Ok(Exit::of_stop(result.stop, Exit::No));
+        _ => console.say("stopped before the search was done"),
     }
-    if let Some(log) = own_log.filter(|log| log.exists()) {
-        std::fs::remove_file(log)?;
-    }
-    if problem.points.is_none() && result.meshes[0].1.is_some() {
-        console.note("the surface has no coordinates; those of its canonical polyhedron are used");
-    }
-    let mut output = Output {
-        meshes: Vec::new(),
-        stopped: crate::commands::atlas::stop_word(result.stop),
-        seconds: 0.0,
-        notes: problem.notes.clone(),
-        choice: result.choice.clone(),
-    };
-    let mut all_valid = true;
-    for (i, (filled, placed)) in result.meshes.iter().enumerate() {
-        let report = FillReport::new(&problem, filled, &result.tried);
-        let valid = args.no_embed || placed.as_ref().is_none_or(Placed::is_certified);
-        all_valid &= valid;
-        let mut mesh = MeshOutput { report, geometry: placed.as_ref().map(Placed::report), files: Vec::new() };
-        if valid || !args.require_valid {
-            let suffix = (args.count > 1).then_some(i + 1);
-            mesh.files = write_mesh(args, &problem, filled, placed.as_ref(), suffix, console)?;
-        }
-        output.meshes.push(mesh);
-    }
-    output.seconds = start.elapsed().as_secs_f64();
-    if console.json {
-        console.print_json(&output)?;
-    } else {
-        say(&output, args, console);
-    }
-    let enough = output.meshes.len() == args.count as usize;
-    Ok(Exit::of_stop(result.stop, if all_valid && enough { Exit::Done } else { Exit::No }))
 }
 
 /// A positive number.
@@ -408,6 +436,9 @@ fn say(output: &Output, args: &FillArgs, console: &Console) {
     }
     if output.meshes.len() < args.count as usize {
         console.say(format!("{} of {} meshes asked for were found", output.meshes.len(), args.count));
+    }
+    if output.stopped != "finished" {
+        console.say(format!("stopped early ({}); a longer run may bring a better mesh", output.stopped));
     }
     console.say(format!("{:.2} s", output.seconds));
 }
