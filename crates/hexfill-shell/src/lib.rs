@@ -41,6 +41,7 @@ mod test_surfaces;
 
 pub use boundary_layers::{BoundaryLayers, cut_boundary_layers};
 pub use front::{Front, FrontError, Mark};
+pub use lift::CoarseMesh;
 pub use shell::{ShellOptions, Shelled, Shelling, shell};
 pub use split_star::{Layer, SplitOptions, SplitStars, SplitVertex, split_stars};
 pub use stir::stir_front;

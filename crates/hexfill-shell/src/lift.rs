@@ -6,9 +6,10 @@
 
 use crate::blend::{blend_block, springs};
 use crate::compress::Coarse;
-use hexfill_mesh::Context;
 use hexfill_mesh::cube::{EDGES, FACETS, POSITIONS};
+use hexfill_mesh::{Context, HexMesh};
 use rustc_hash::FxHashMap;
+use std::sync::Arc;
 
 /// A sheet that ends in chords of different multiplicities.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -34,22 +35,34 @@ pub(crate) fn lift(
     ctx: &Context<'_>,
 ) -> Result<Lifted, MultiplicityClash> {
     let segments = segments(coarse, hexes)?;
+    let at_fixed = |v: u32| points.and_then(|p| coarse.vertices.get(v as usize).map(|fine| p[fine.index()]));
+    let corners = points.map(|p| (p, springs(hexes, &segments, &at_fixed, ctx)));
+    let corners = corners.as_ref().map(|(p, at)| (*p, |v: u32| at[&v]));
+    Ok(cut(coarse, n_fine, hexes, &segments, corners))
+}
+
+/// Cuts coarse hexes. `corners`: positions of the fine surface's vertices, and of a coarse mesh's.
+fn cut(
+    coarse: &Coarse,
+    n_fine: u32,
+    hexes: &[[u32; 8]],
+    segments: &FxHashMap<[u32; 2], u32>,
+    corners: Option<(&[[f64; 3]], impl Fn(u32) -> [f64; 3])>,
+) -> Lifted {
     let mut lattice = Lattice::new(coarse, n_fine);
     let (mut fine, mut before) = (Vec::new(), Vec::with_capacity(hexes.len() + 1));
-    let mut guess = points.map(<[_]>::to_vec);
-    let at_fixed = |v: u32| points.and_then(|p| coarse.vertices.get(v as usize).map(|fine| p[fine.index()]));
-    let corners = points.map(|_| springs(hexes, &segments, &at_fixed, ctx));
+    let mut guess = corners.as_ref().map(|(points, _)| points.to_vec());
     for hex in hexes {
         let sizes = AXES.map(|[i, j]| segments[&pair(hex[i], hex[j])]);
         let [a, b, c] = sizes.map(|s| s as usize);
         before.push(fine.len());
         let ids = lattice.points_of(hex, sizes);
         let at = |i: usize, j: usize, k: usize| ids[(k * (b + 1) + j) * (a + 1) + i];
-        if let (Some(guess), Some(corners)) = (&mut guess, &corners) {
+        if let (Some(guess), Some((_, corner))) = (&mut guess, &corners) {
             guess.resize(lattice.n_vertices as usize, [f64::NAN; 3]);
             for (p, v) in POSITIONS.iter().zip(hex) {
                 let id = at(p[0] as usize * a, p[1] as usize * b, p[2] as usize * c) as usize;
-                guess[id] = corners[v];
+                guess[id] = corner(*v);
             }
             blend_block(&ids, sizes, guess);
         }
@@ -62,7 +75,42 @@ pub(crate) fn lift(
         }
     }
     before.push(fine.len());
-    Ok(Lifted { before, n_vertices: lattice.n_vertices, hexes: fine, points: guess })
+    Lifted { before, n_vertices: lattice.n_vertices, hexes: fine, points: guess }
+}
+
+/// The coarse mesh that a mesh was lifted from: few hexes to find positions for, which the fine mesh can start from.
+#[derive(Clone, Debug)]
+pub struct CoarseMesh {
+    mesh: HexMesh,
+    coarse: Arc<Coarse>,
+    points: Arc<[[f64; 3]]>,
+}
+
+impl CoarseMesh {
+    /// The coarse mesh of these hexes, over a surface with these points.
+    pub(crate) fn new(coarse: &Arc<Coarse>, points: &Arc<[[f64; 3]]>, hexes: &[[u32; 8]]) -> Option<Self> {
+        let n = hexes.iter().flatten().max()? + 1;
+        let mesh = HexMesh::try_new(n as usize, hexes).ok()?;
+        Some(Self { mesh, coarse: Arc::clone(coarse), points: Arc::clone(points) })
+    }
+
+    /// Its hexes.
+    pub fn mesh(&self) -> &HexMesh {
+        &self.mesh
+    }
+
+    /// Positions of the vertices of its boundary, which come first.
+    pub fn boundary(&self) -> Vec<[f64; 3]> {
+        self.coarse.vertices.iter().map(|fine| self.points[fine.index()]).collect()
+    }
+
+    /// Positions of all vertices of the fine mesh, blended between those of the coarse mesh; the surface's own come first, bit for bit.
+    pub fn lifted(&self, at: &[[f64; 3]]) -> Option<Vec<[f64; 3]>> {
+        let hexes = self.mesh.hexes_raw();
+        let segments = segments(&self.coarse, &hexes).ok()?;
+        let corners = Some((&*self.points, |v: u32| at[v as usize]));
+        cut(&self.coarse, self.points.len() as u32, &hexes, &segments, corners).points
+    }
 }
 
 /// Edges from corner 0 along x, y and z.

@@ -6,7 +6,7 @@ use crate::compress::{Coarse, compress, uncompressed};
 use crate::develop::develop;
 use crate::deviation::{Deviation, deviation};
 use crate::front::Front;
-use crate::lift::lift;
+use crate::lift::{CoarseMesh, lift};
 use crate::polycube::polycube;
 use crate::solve::solve;
 use crate::stir::stir_front;
@@ -15,6 +15,7 @@ use crate::void::Void;
 use hexfill_mesh::{Context, HexMesh, QuadSurface};
 use hexfill_search::Atlas;
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// What to try.
 #[derive(Clone, Debug)]
@@ -49,6 +50,8 @@ pub struct Shelled {
     pub pillows: u32,
     /// Where its hexes come from, and how many.
     pub stages: Vec<(&'static str, usize)>,
+    /// The smaller mesh it was lifted from, if chords were compressed and positions are known.
+    pub coarse: Option<CoarseMesh>,
 }
 
 /// What shelling brought.
@@ -98,10 +101,11 @@ pub fn shell(
     ctx: &Context<'_>,
 ) -> Shelling {
     let wanted = wanted_hexes(surface, points);
-    let (coarse, fine) = (compress(surface, &wanted), uncompressed(surface, &wanted));
+    let (coarse, fine) = (Arc::new(compress(surface, &wanted)), Arc::new(uncompressed(surface, &wanted)));
+    let shared = points.map(Arc::from);
     let cells = develop(surface, &wanted, points).and_then(|d| polycube(surface, &d));
     let shelling = Shelling { coarse_quads: coarse.surface.n_quads(), left: usize::MAX, ..Shelling::default() };
-    let mut keeper = Keeper { surface, points, coarse: &coarse, fine: &fine, options, shelling };
+    let mut keeper = Keeper { surface, points, shared, coarse: &coarse, fine: &fine, options, shelling };
     for &pillows in &options.pillows {
         if let (0, Some(hexes)) = (pillows, &cells) {
             keeper.keep(&fine, 0, vec![Glued::at_once("grid", hexes.clone())], ctx);
@@ -127,8 +131,10 @@ pub fn shell(
 struct Keeper<'a> {
     surface: &'a QuadSurface,
     points: Option<&'a [[f64; 3]]>,
-    coarse: &'a Coarse,
-    fine: &'a Coarse,
+    /// The same, for meshes to keep.
+    shared: Option<Arc<[[f64; 3]]>>,
+    coarse: &'a Arc<Coarse>,
+    fine: &'a Arc<Coarse>,
     options: &'a ShellOptions,
     shelling: Shelling,
 }
@@ -177,7 +183,7 @@ impl Keeper<'_> {
     }
 
     /// Lifts those meshes of `coarse` that no other beats in both cost and hexes, and keeps them; returns how many.
-    fn keep(&mut self, coarse: &Coarse, pillows: u32, meshes: Vec<Glued>, ctx: &Context<'_>) -> usize {
+    fn keep(&mut self, coarse: &Arc<Coarse>, pillows: u32, meshes: Vec<Glued>, ctx: &Context<'_>) -> usize {
         let before = self.shelling.meshes.len();
         let mut measured: Vec<(Deviation, Glued)> =
             meshes.into_iter().filter_map(|m| deviation(coarse, &m.hexes).map(|d| (d, m))).collect();
@@ -201,7 +207,14 @@ impl Keeper<'_> {
     }
 
     /// The mesh of the surface that a coarse mesh becomes; `None` if it does not lift.
-    fn lifted(&self, coarse: &Coarse, glued: &Glued, cost: f32, pillows: u32, ctx: &Context<'_>) -> Option<Shelled> {
+    fn lifted(
+        &self,
+        coarse: &Arc<Coarse>,
+        glued: &Glued,
+        cost: f32,
+        pillows: u32,
+        ctx: &Context<'_>,
+    ) -> Option<Shelled> {
         let lifted = lift(coarse, self.surface.n_vertices() as u32, self.points, &glued.hexes, ctx).ok()?;
         let mesh = HexMesh::try_new(lifted.n_vertices as usize, &lifted.hexes).ok()?;
         let mut before = 0;
@@ -213,7 +226,10 @@ impl Keeper<'_> {
             }
             before = after;
         }
-        Some(Shelled { mesh, points: lifted.points, cost, pillows, stages })
+        let is_compressed = glued.hexes.len() < mesh.n_hexes();
+        let points = self.shared.as_ref().filter(|_| is_compressed);
+        let coarse = points.and_then(|points| CoarseMesh::new(coarse, points, &glued.hexes));
+        Some(Shelled { mesh, points: lifted.points, cost, pillows, stages, coarse })
     }
 }
 

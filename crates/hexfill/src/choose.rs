@@ -43,7 +43,7 @@ const STARTS: u32 = 2;
 const MOST_CAVITIES: u64 = 30_000;
 
 /// Surfaces of more quads are constructed only if nothing else filled them.
-const MOST_CONSTRUCTED: usize = 300;
+const MOST_CONSTRUCTED: usize = 1000;
 
 /// The place of a mesh in the order; smaller is better.
 type Rank = (u8, f64);
@@ -241,7 +241,8 @@ impl<'a> Trial<'a> {
             one.starts = one.starts.max(1);
             one.programs = one.programs.min(SCREENING);
             one.smooth_start = true;
-            place_as_it_is(&filled, self.boundary, Some(&one), &self.limited())
+            let placed = place_as_it_is(&filled, self.boundary, Some(&one), &self.limited());
+            self.from_coarse(&filled, placed, one)
         } else {
             place(&mut filled, self.problem, self.boundary, Some(self.embed), &self.limited())
         };
@@ -252,6 +253,22 @@ impl<'a> Trial<'a> {
             self.best = Some((rank, filled, placed));
         }
         Ok(())
+    }
+
+    /// A mesh that was placed, or placed once more if it is not good: from the positions of the coarse mesh it was lifted from, which has
+    /// few hexes and is often valid where the fine one is not.
+    fn from_coarse(&self, filled: &Filled, placed: Placed, mut how: hexfill_embed::Options) -> Placed {
+        let is_good = placed.is_certified() && placed.worst() >= GOOD;
+        let Some(coarse) = filled.coarse.as_ref().filter(|_| !is_good && self.ctx.stop().is_none()) else {
+            return placed;
+        };
+        let at = hexfill_embed::embed(coarse.mesh(), &coarse.boundary(), None, &how, &self.limited());
+        let Some(start) = at.ok().and_then(|at| coarse.lifted(&at.points)) else { return placed };
+        let from = Filled { start: Some(start), ..filled.clone() };
+        how.smooth_start = false;
+        let again = place_as_it_is(&from, self.boundary, Some(&how), &self.limited());
+        let is_better = rank(filled, &again, self.options.prefer) < rank(filled, &placed, self.options.prefer);
+        if is_better { again } else { placed }
     }
 
     /// The mesh with the stars split that leave (next to) no room; `None` if there are none, or none can be helped.

@@ -102,7 +102,7 @@ pub(crate) fn fill_apart(
     }
     let mesh = HexMesh::try_new(n_vertices as usize, &hexes).expect("meshes without common vertices glue properly");
     if mesh.n_hexes() as u64 <= u64::from(options.max_hexes) {
-        result.meshes.push(Filled { mesh, route, start, stages: Vec::new() });
+        result.meshes.push(Filled { mesh, route, start, stages: Vec::new(), coarse: None });
     }
     Ok(result)
 }

@@ -138,6 +138,8 @@ pub struct Filled {
     pub start: Option<Vec<[f64; 3]>>,
     /// What made how many of its hexes, where more than one step did.
     pub stages: Vec<(&'static str, usize)>,
+    /// The smaller mesh that a shelling was lifted from.
+    pub(crate) coarse: Option<hexfill_shell::CoarseMesh>,
 }
 
 impl Filled {
@@ -148,7 +150,7 @@ impl Filled {
             stages.push((self.route.words(), self.mesh.n_hexes()));
         }
         stages.push((step, mesh.n_hexes().saturating_sub(self.mesh.n_hexes())));
-        Self { mesh, route: self.route, start: None, stages }
+        Self { mesh, route: self.route, start: None, stages, coarse: None }
     }
 }
 
@@ -325,6 +327,7 @@ pub(crate) fn shelled(
                 route: Route::Shelling,
                 start: shelled.points,
                 stages: shelled.stages,
+                coarse: shelled.coarse,
             });
         }
     }
@@ -354,7 +357,12 @@ pub(crate) fn search(
     result.tried.push(format!("atlas of {} states, inward flips over {} cavities", atlas.n_states(), outcome.cavities));
     for filling in outcome.fillings {
         let route = if filling.glued == 0 { Route::Atlas } else { Route::InwardFlips };
-        accept(surface, Filled { mesh: filling.mesh, route, start: None, stages: Vec::new() }, options, result)?;
+        accept(
+            surface,
+            Filled { mesh: filling.mesh, route, start: None, stages: Vec::new(), coarse: None },
+            options,
+            result,
+        )?;
     }
     if options.strategy == Strategy::Atlas && result.meshes.len() < options.count && ctx.stop().is_none() {
         grow_towards(surface, options, ctx, result)?;
@@ -394,7 +402,7 @@ fn grow_towards(
                 let mesh = HexMesh::try_new((first + fresh) as usize, &hexes).expect("a ball's hexes glue properly");
                 accept(
                     surface,
-                    Filled { mesh, route: Route::Growth, start: None, stages: Vec::new() },
+                    Filled { mesh, route: Route::Growth, start: None, stages: Vec::new(), coarse: None },
                     options,
                     result,
                 )?;
@@ -459,7 +467,7 @@ pub(crate) fn construct(
         if mesh.n_hexes() as u64 <= u64::from(options.max_hexes) {
             accept(
                 &problem.surface,
-                Filled { mesh, route: Route::Construction, start, stages: Vec::new() },
+                Filled { mesh, route: Route::Construction, start, stages: Vec::new(), coarse: None },
                 options,
                 result,
             )?;
