@@ -10,8 +10,9 @@ use crate::last_resort::{LastResort, leaving_time};
 use crate::no_room::no_room;
 use crate::placed_fill::{PlaceOptions, PlacedFill};
 use crate::problem::Problem;
+use crate::simplify::carried_positions;
 use hexfill_embed::quick_star_bound;
-use hexfill_mesh::{Context, StopReason};
+use hexfill_mesh::{Context, StopReason, VertexId};
 use hexfill_search::MAX_QUADS;
 use hexfill_shell::{Layer, SplitOptions, cut_boundary_layers, split_stars};
 use serde::Serialize;
@@ -223,12 +224,14 @@ impl<'a> Trial<'a> {
             verify(&self.problem.surface, &pillowed.mesh, filled.route)?;
             filled = filled.changed("pillow", pillowed.mesh);
         }
-        let placed = if filled.route == Route::Shelling {
-            // Its surface vertices lie where the surface's do, so there is one way to place it.
+        let is_shelled = filled.route == Route::Shelling;
+        if is_shelled {
             let perfect = (0, within(filled.mesh.n_hexes(), 1.0, prefer));
             if self.best.as_ref().is_some_and(|(r, ..)| *r <= perfect) {
                 return Ok(());
             }
+        }
+        if is_shelled || filled.route == Route::Construction {
             let bound = quick_star_bound(&filled.mesh, self.boundary).unwrap_or(1.0);
             if let Some(split) = self.split(&filled, bound)? {
                 self.consider(split)?;
@@ -237,6 +240,9 @@ impl<'a> Trial<'a> {
                 self.seen.push(format!("{} (star bound {bound:.3})", words(&filled)));
                 return Ok(());
             }
+        }
+        let placed = if is_shelled {
+            // Its surface vertices lie where the surface's do, so there is one way to place it.
             let mut one = *self.embed;
             one.starts = one.starts.max(1);
             one.programs = one.programs.min(SCREENING);
@@ -285,7 +291,15 @@ impl<'a> Trial<'a> {
             return Ok(None);
         }
         verify(&self.problem.surface, &split.mesh, filled.route)?;
-        Ok(Some(filled.changed("split stars", split.mesh)))
+        let mut made = filled.changed("split stars", split.mesh);
+        // A construction starts from positions of its own.
+        let start = filled.start.as_ref().filter(|_| filled.route == Route::Construction);
+        made.start = start.map(|points| {
+            let origin: Vec<Option<VertexId>> =
+                (0..made.mesh.n_vertices()).map(|v| (v < points.len()).then(|| VertexId::new(v))).collect();
+            carried_positions(&made.mesh, &origin, points)
+        });
+        Ok(Some(made))
     }
 
     /// Raises the best mesh further, if it was only screened.

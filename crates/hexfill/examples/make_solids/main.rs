@@ -2,7 +2,8 @@
 //!
 //! KIND is `solids` (some 30 solids with a known good hex mesh), `voxels` (200 random ones of genus 0), `holes` (100 with tunnels and
 //! cavities), `balls` (cubed spheres and ellipsoids), `cut` (triangulated spheres cut into quads), `radial` (radial graphs), `smooth`
-//! (voxel solids refined and smoothed) or `mixed` (quad-dominant surfaces refined, with self-crossing chords); all by default. Each surface is `KIND_NAME.obj`; its known mesh, if there is one, is `reference/KIND_NAME.vtk`, whose first
+//! (voxel solids refined and smoothed) or `mixed` (quad-dominant surfaces refined, with self-crossing chords); all these by default. `many`
+//! is 1,000 random surfaces of 30 to 300 quads of all these kinds, without known meshes. Each surface is `KIND_NAME.obj`; its known mesh, if there is one, is `reference/KIND_NAME.vtk`, whose first
 //! vertices are those of the surface. `references.json` says for each file its kind, quads, and the reference's hexes and
 //! certified scaled Jacobian. The same folder comes out everywhere, up to the last bits of sines.
 
@@ -143,9 +144,59 @@ fn make(kind: &str, folder: &mut Folder) -> Result<(), Box<dyn Error>> {
                 }
             }
         }
+        "many" => {
+            for seed in 0..1000 {
+                let (name, surface) = one_of_many(seed);
+                folder.bare("many", &format!("{seed:03}_{name}_{}", surface.1.len()), surface)?;
+            }
+        }
         _ => return Err(format!("no kind {kind}").into()),
     }
     Ok(())
+}
+
+/// A random surface of 30 to 300 quads; kinds take turns, sizes grow and start again.
+fn one_of_many(seed: u64) -> (&'static str, spheres::Surface) {
+    let sizes = 2 + (seed / 8 * 7 % 29) as usize;
+    let turned = |[x, y, z]: [f64; 3]| {
+        let (sin, cos) = (0.1 * z).sin_cos();
+        [cos * x - sin * y, sin * x + cos * y + 0.01 * z * z, z + 0.02 * x * x]
+    };
+    let made = (0..).map(|more| {
+        let size = sizes + more;
+        let seed = 10_000 + 1000 * more as u64 + seed;
+        let radial = 12 + 3 * size - size % 2;
+        match seed % 8 {
+            0 => ("voxels", voxels::solid(&voxels::sphere(4 + 3 * size, seed)).surface()),
+            1 => ("twisted", voxels::solid(&voxels::sphere(4 + 3 * size, seed)).mapped(turned).surface()),
+            2 => {
+                let cells = voxels::with_holes(
+                    [3, 3 + size as i32 % 2, 3 + size as i32 / 15],
+                    size % 4,
+                    (size + 1) % 2,
+                    size % 10,
+                    seed,
+                )
+                .0;
+                ("holes", voxels::solid(&cells).surface())
+            }
+            3 => ("cut", spheres::cut_triangles(&spheres::random_points(6 + 3 * size / 2, seed))),
+            4 => ("radial", spheres::radial(&spheres::random_points(radial + radial % 2, seed))),
+            5 => {
+                let points = spheres::random_points(8 + 2 * size, seed);
+                ("mixed", refine::catmull_clark(&points, &refine::mixed(&points, seed)))
+            }
+            6 => ("smooth", refine::catmull_clark_quads(&voxels::solid(&voxels::sphere(1 + size / 2, seed)).surface())),
+            _ => {
+                // Cubed boxes of any sides, as rough as stones.
+                let cells = voxels::sphere(2 + size, seed);
+                let rough = voxels::solid(&cells)
+                    .mapped(|p| p.map(|x| x + 0.12 * (5.0 * (p[0] + 2.0 * p[1] + 3.0 * p[2]) + x).sin()));
+                ("rough", rough.surface())
+            }
+        }
+    });
+    made.into_iter().find(|(_, (_, quads))| (30..=300).contains(&quads.len())).expect("sizes grow")
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
