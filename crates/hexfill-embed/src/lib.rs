@@ -19,6 +19,7 @@ mod curvature;
 mod embed;
 mod energy;
 mod error;
+mod interior;
 mod jacobian;
 mod lbfgs;
 mod lift;

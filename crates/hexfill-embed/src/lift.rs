@@ -4,9 +4,10 @@
 //! patch `sum phi(s - t)` over the corners (and the inner points of cells where the worst was seen) is minimised by L-BFGS, where
 //! `phi(z) = (h - z)^2 / (h z)` below `h = tau - t` and 0 above, and t is a share of the patch's worst value: a barrier at t that
 //! pulls at every cell below tau, the worst most, and is 0 elsewhere, so a patch ends where its cells are good and the
-//! patches are independent. A patch is written back only if its worst value over whole cells rose, as judged by
-//! bisection. Then tau is raised, as long as the worst value follows. All bounds are counts, so the result does not depend on
-//! the machine or the threads; the work is about linear in the number of poor cells.
+//! patches are independent. A scaled Jacobian does not know lengths, and may have its optimum in the limit of a vanishing
+//! star only: so edges that have become short have a barrier of their own. A patch is written back only if its worst value over
+//! whole cells rose, as judged by bisection. Then tau is raised, as long as the worst value follows. All bounds are counts, so
+//! the result does not depend on the machine or the threads; the work is about linear in the number of poor cells.
 
 use crate::jacobian::{
     CORNER_MIXED, FRAME_EDGES, Frame, MIXED, add_by_corner, columns, scaled, scaled_with_gradient, weights_at,
@@ -15,7 +16,7 @@ use crate::lbfgs::{self, minimise};
 use crate::maxmin::{judge, judge_near_worst};
 use crate::patch::{Incidence, Patch, patches};
 use crate::problem::Problem;
-use crate::vector::{Vector, add, det, dot, norm, sub};
+use crate::vector::{Vector, add, det, dot, norm, scale, sub};
 use hexfill_mesh::cube::CORNER_NEIGHBOURS;
 use hexfill_mesh::{Context, StopReason};
 use rayon::prelude::*;
@@ -36,8 +37,23 @@ const NARROWEST: f64 = 0.06;
 const ITERATIONS: usize = 30;
 const RESTARTS: usize = 3;
 
+/// A level ends so far beyond the target, in units of it: what is aimed at is reached in the limit only.
+const BEYOND: f64 = 5e-4;
+
+/// Edges resist when they are shorter than this share of the shortest at their vertex was; they never come to half of that.
+const RESISTS: f64 = 0.5;
+
 /// Inner points watched in a cell at most.
 const WATCHED: usize = 16;
+
+/// Per vertex: the length under which its edges resist, half of its shortest edge at `points`; infinite for vertices that do not move.
+pub(crate) fn floors(problem: &Problem, points: &[Vector]) -> Vec<f64> {
+    let mut floors = vec![f64::INFINITY; problem.n_vertices];
+    for (s, &v) in problem.free.iter().enumerate() {
+        floors[v as usize] = RESISTS * problem.shortest_edge_at(s, points);
+    }
+    floors
+}
 
 /// How many cells may be worked on, over all passes.
 pub(crate) fn visits(n_hexes: usize) -> usize {
@@ -49,11 +65,15 @@ pub(crate) fn lift(
     problem: &Problem,
     incidence: &Incidence,
     points: &mut [Vector],
+    floors: &[f64],
     target: f64,
     visits: &mut usize,
     context: &Context<'_>,
 ) -> Option<StopReason> {
     let n_hexes = problem.hexes.len();
+    // What has become short by other means does not start beyond the barrier.
+    let floors: Vec<f64> =
+        floors.iter().zip(self::floors(problem, points)).map(|(&a, now)| a.min(now / RESISTS)).collect();
     // In units of the worst value.
     let mut reach = 1.0;
     let mut rings = 1;
@@ -65,7 +85,7 @@ pub(crate) fn lift(
         if worst <= 0.0 || worst >= target {
             return None;
         }
-        let tau = (worst + reach * worst.max(LEAST_REACH)).min(target);
+        let tau = (worst + reach * worst.max(LEAST_REACH)).min(target + BEYOND * target.abs());
         let cells = judge(problem, points, tau);
         let seeds: Vec<usize> = (0..n_hexes).filter(|&h| cells.each[h].0 < tau).collect();
         let parts = patches(problem, incidence, &seeds, rings);
@@ -83,8 +103,10 @@ pub(crate) fn lift(
         *visits -= size;
         let quiet = Context { progress: None, ..*context };
         let before = &*points;
-        let better: Vec<Option<Vec<Vector>>> =
-            parts.par_iter().map(|part| lift_patch(part, part.points(before), tau, &quiet)).collect();
+        let better: Vec<Option<Vec<Vector>>> = parts
+            .par_iter()
+            .map(|part| lift_patch(part, part.points(before), &part.of_vertices(&floors), tau, &quiet))
+            .collect();
         for (part, better) in parts.iter().zip(better) {
             if let Some(better) = better {
                 part.write_back(&better, points);
@@ -109,7 +131,13 @@ pub(crate) fn lift(
 }
 
 /// Lifts one patch; `None` if its worst cell did not get better.
-fn lift_patch(part: &Patch, points: Vec<Vector>, tau: f64, context: &Context<'_>) -> Option<Vec<Vector>> {
+fn lift_patch(
+    part: &Patch,
+    points: Vec<Vector>,
+    floors: &[f64],
+    tau: f64,
+    context: &Context<'_>,
+) -> Option<Vec<Vector>> {
     let problem = &part.problem;
     let before = judge(problem, &points, tau);
     if before.worst <= 0.0 || problem.n_variables() == 0 {
@@ -122,7 +150,7 @@ fn lift_patch(part: &Patch, points: Vec<Vector>, tau: f64, context: &Context<'_>
         }
         let mut trial = points.clone();
         let t = share * before.worst;
-        Barrier { problem, inner: &inner, t, height: tau - t }.descend(&mut trial, context);
+        Barrier { problem, inner: &inner, floors, t, height: tau - t }.descend(&mut trial, context);
         let after = judge(problem, &trial, tau);
         if after.worst > before.worst {
             return Some(trial);
@@ -143,9 +171,23 @@ fn watched((worst, seen): &(f64, Vec<Vector>), tau: f64) -> Vec<Vector> {
     if *worst < tau { seen.clone() } else { Vec::new() }
 }
 
+/// The barrier with its slope and curvature: infinite at 0, and 0 from `h` on.
+#[inline]
+fn phi(z: f64, h: f64) -> (f64, f64, f64) {
+    if z >= h {
+        (0.0, 0.0, 0.0)
+    } else if z > 0.0 {
+        (h / z - 2.0 + z / h, 1.0 / h - h / (z * z), 2.0 * h / (z * z * z))
+    } else {
+        (f64::INFINITY, 0.0, 0.0)
+    }
+}
+
 struct Barrier<'a> {
     problem: &'a Problem,
     inner: &'a [Vec<Vector>],
+    /// Per vertex: the length under which its edges resist.
+    floors: &'a [f64],
     /// Where the barrier is infinite.
     t: f64,
     /// How far above t it ends.
@@ -185,13 +227,30 @@ impl Barrier<'_> {
     /// Value, slope and curvature at a scaled Jacobian.
     #[inline]
     fn phi(&self, s: f64) -> (f64, f64, f64) {
-        let (z, h) = (s - self.t, self.height);
-        if z >= h {
-            (0.0, 0.0, 0.0)
-        } else if z > 0.0 {
-            (h / z - 2.0 + z / h, 1.0 / h - h / (z * z), 2.0 * h / (z * z * z))
-        } else {
-            (f64::INFINITY, 0.0, 0.0)
+        phi(s - self.t, self.height)
+    }
+
+    /// Adds the barrier of the edges that have become short: 0 at the floor, infinite at half of it.
+    #[inline]
+    fn resist(
+        &self,
+        hex: usize,
+        frame: &[[Vector; 4]; 3],
+        inverse: &[[f64; 4]; 3],
+        value: &mut f64,
+        gradient: &mut [Vector; 8],
+    ) {
+        let floors = self.problem.hexes[hex].map(|v| self.floors[v as usize]);
+        for (n, [from, to]) in FRAME_EDGES.into_iter().enumerate() {
+            let (floor, inverse) = (floors[from].min(floors[to]), inverse[n / 4][n % 4]);
+            if floor * inverse <= 1.0 || floor == f64::INFINITY {
+                continue;
+            }
+            let (v, slope, _) = phi(1.0 / (floor * inverse) - 0.5, 0.5);
+            *value += v;
+            let along = scale(slope / floor * inverse, frame[n / 4][n % 4]);
+            gradient[to] = add(gradient[to], along);
+            gradient[from] = sub(gradient[from], along);
         }
     }
 
@@ -202,6 +261,7 @@ impl Barrier<'_> {
         let mut gradient = [[0.0; 3]; 8];
         let frame = Frame::new(&p).0;
         let inverse = frame.map(|d| d.map(|e| 1.0 / norm(e)));
+        self.resist(hex, &frame, &inverse, &mut value, &mut gradient);
         for n in CORNER_MIXED {
             let [i, j, k] = MIXED[n].edges;
             let c = [frame[0][i], frame[1][j], frame[2][k]];
@@ -280,7 +340,9 @@ mod tests {
         let mut points: Vec<Vector> = (0..27).map(|v| [v % 3, v / 3 % 3, v / 9].map(f64::from)).collect();
         points[13] = std::array::from_fn(|k| points[13][k] + 0.4 * random.signed());
         let inner = vec![vec![[0.5, 0.25, 0.5]]; 8];
-        let barrier = Barrier { problem: &problem, inner: &inner, t: 0.1, height: 0.9 };
+        // Edges of about 1, some of which resist.
+        let floors: Vec<f64> = (0..27).map(|v| if v == 13 { 1.2 } else { f64::INFINITY }).collect();
+        let barrier = Barrier { problem: &problem, inner: &inner, floors: &floors, t: 0.1, height: 0.9 };
         let total = |points: &[Vector]| (0..8).map(|h| barrier.hex(h, points).0).sum::<f64>();
         let mut gradient = vec![0.0; 3];
         let rows: Vec<_> = (0..8).map(|h| barrier.hex(h, &points)).collect();
@@ -292,8 +354,14 @@ mod tests {
             let slope = (total(&high) - total(&low)) / 2e-6;
             assert!((slope - gradient[k]).abs() < 1e-5 * (1.0 + slope.abs()), "{slope} {}", gradient[k]);
         }
-        points[13] = [5.0, 0.0, 0.0];
-        assert_eq!(total(&points), f64::INFINITY);
+        let closed = |p: Vector| {
+            let mut moved = points.clone();
+            moved[13] = p;
+            total(&moved) == f64::INFINITY
+        };
+        assert!(closed([5.0, 0.0, 0.0]));
+        // Valid, but an edge of half its floor.
+        assert!(closed([1.0, 1.0, 0.59]) && !closed([1.0, 1.0, 0.61]));
     }
 
     #[test]
@@ -312,7 +380,8 @@ mod tests {
         assert!(before > 0.0 && before < 0.4, "{before}");
         let incidence = Incidence::new(&problem);
         let mut left = visits(problem.hexes.len());
-        lift(&problem, &incidence, &mut points, 0.9, &mut left, &Context::default());
+        let lengths = floors(&problem, &points);
+        lift(&problem, &incidence, &mut points, &lengths, 0.9, &mut left, &Context::default());
         let after = judge(&problem, &points, 1.0).worst;
         assert!(after > 0.7, "{before} {after}");
         assert!(left > visits(problem.hexes.len()) / 2);
