@@ -22,6 +22,7 @@ mod error;
 mod interior;
 mod jacobian;
 mod lbfgs;
+mod lengths;
 mod lift;
 mod local;
 mod maxmin;

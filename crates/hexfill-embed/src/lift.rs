@@ -5,7 +5,7 @@
 //! `phi(z) = (h - z)^2 / (h z)` below `h = tau - t` and 0 above, and t is a share of the patch's worst value: a barrier at t that
 //! pulls at every cell below tau, the worst most, and is 0 elsewhere, so a patch ends where its cells are good and the
 //! patches are independent. A scaled Jacobian does not know lengths, and may have its optimum in the limit of a vanishing
-//! star only: so edges that have become short have a barrier of their own. A patch is written back only if its worst value over
+//! star only: so edges that have become short have a barrier of their own ([`crate::lengths`]). A patch is written back only if its worst value over
 //! whole cells rose, as judged by bisection. Then tau is raised, as long as the worst value follows. All bounds are counts, so
 //! the result does not depend on the machine or the threads; the work is about linear in the number of poor cells.
 
@@ -13,10 +13,11 @@ use crate::jacobian::{
     CORNER_MIXED, FRAME_EDGES, Frame, MIXED, add_by_corner, columns, scaled, scaled_with_gradient, weights_at,
 };
 use crate::lbfgs::{self, minimise};
+use crate::lengths::Floors;
 use crate::maxmin::{judge, judge_near_worst};
 use crate::patch::{Incidence, Patch, patches};
 use crate::problem::Problem;
-use crate::vector::{Vector, add, det, dot, norm, scale, sub};
+use crate::vector::{Vector, add, det, dot, norm, sub};
 use hexfill_mesh::cube::CORNER_NEIGHBOURS;
 use hexfill_mesh::{Context, StopReason};
 use rayon::prelude::*;
@@ -40,20 +41,8 @@ const RESTARTS: usize = 3;
 /// A level ends so far beyond the target, in units of it: what is aimed at is reached in the limit only.
 const BEYOND: f64 = 5e-4;
 
-/// Edges resist when they are shorter than this share of the shortest at their vertex was; they never come to half of that.
-const RESISTS: f64 = 0.5;
-
 /// Inner points watched in a cell at most.
 const WATCHED: usize = 16;
-
-/// Per vertex: the length under which its edges resist, half of its shortest edge at `points`; infinite for vertices that do not move.
-pub(crate) fn floors(problem: &Problem, points: &[Vector]) -> Vec<f64> {
-    let mut floors = vec![f64::INFINITY; problem.n_vertices];
-    for (s, &v) in problem.free.iter().enumerate() {
-        floors[v as usize] = RESISTS * problem.shortest_edge_at(s, points);
-    }
-    floors
-}
 
 /// How many cells may be worked on, over all passes.
 pub(crate) fn visits(n_hexes: usize) -> usize {
@@ -65,15 +54,13 @@ pub(crate) fn lift(
     problem: &Problem,
     incidence: &Incidence,
     points: &mut [Vector],
-    floors: &[f64],
+    floors: &Floors,
     target: f64,
     visits: &mut usize,
     context: &Context<'_>,
 ) -> Option<StopReason> {
     let n_hexes = problem.hexes.len();
-    // What has become short by other means does not start beyond the barrier.
-    let floors: Vec<f64> =
-        floors.iter().zip(self::floors(problem, points)).map(|(&a, now)| a.min(now / RESISTS)).collect();
+    let floors = floors.lowered(problem, points);
     // In units of the worst value.
     let mut reach = 1.0;
     let mut rings = 1;
@@ -105,7 +92,7 @@ pub(crate) fn lift(
         let before = &*points;
         let better: Vec<Option<Vec<Vector>>> = parts
             .par_iter()
-            .map(|part| lift_patch(part, part.points(before), &part.of_vertices(&floors), tau, &quiet))
+            .map(|part| lift_patch(part, part.points(before), &floors.of_part(part), tau, &quiet))
             .collect();
         for (part, better) in parts.iter().zip(better) {
             if let Some(better) = better {
@@ -134,7 +121,7 @@ pub(crate) fn lift(
 fn lift_patch(
     part: &Patch,
     points: Vec<Vector>,
-    floors: &[f64],
+    floors: &Floors,
     tau: f64,
     context: &Context<'_>,
 ) -> Option<Vec<Vector>> {
@@ -171,23 +158,10 @@ fn watched((worst, seen): &(f64, Vec<Vector>), tau: f64) -> Vec<Vector> {
     if *worst < tau { seen.clone() } else { Vec::new() }
 }
 
-/// The barrier with its slope and curvature: infinite at 0, and 0 from `h` on.
-#[inline]
-fn phi(z: f64, h: f64) -> (f64, f64, f64) {
-    if z >= h {
-        (0.0, 0.0, 0.0)
-    } else if z > 0.0 {
-        (h / z - 2.0 + z / h, 1.0 / h - h / (z * z), 2.0 * h / (z * z * z))
-    } else {
-        (f64::INFINITY, 0.0, 0.0)
-    }
-}
-
 struct Barrier<'a> {
     problem: &'a Problem,
     inner: &'a [Vec<Vector>],
-    /// Per vertex: the length under which its edges resist.
-    floors: &'a [f64],
+    floors: &'a Floors,
     /// Where the barrier is infinite.
     t: f64,
     /// How far above t it ends.
@@ -227,30 +201,13 @@ impl Barrier<'_> {
     /// Value, slope and curvature at a scaled Jacobian.
     #[inline]
     fn phi(&self, s: f64) -> (f64, f64, f64) {
-        phi(s - self.t, self.height)
-    }
-
-    /// Adds the barrier of the edges that have become short: 0 at the floor, infinite at half of it.
-    #[inline]
-    fn resist(
-        &self,
-        hex: usize,
-        frame: &[[Vector; 4]; 3],
-        inverse: &[[f64; 4]; 3],
-        value: &mut f64,
-        gradient: &mut [Vector; 8],
-    ) {
-        let floors = self.problem.hexes[hex].map(|v| self.floors[v as usize]);
-        for (n, [from, to]) in FRAME_EDGES.into_iter().enumerate() {
-            let (floor, inverse) = (floors[from].min(floors[to]), inverse[n / 4][n % 4]);
-            if floor * inverse <= 1.0 || floor == f64::INFINITY {
-                continue;
-            }
-            let (v, slope, _) = phi(1.0 / (floor * inverse) - 0.5, 0.5);
-            *value += v;
-            let along = scale(slope / floor * inverse, frame[n / 4][n % 4]);
-            gradient[to] = add(gradient[to], along);
-            gradient[from] = sub(gradient[from], along);
+        let (z, h) = (s - self.t, self.height);
+        if z >= h {
+            (0.0, 0.0, 0.0)
+        } else if z > 0.0 {
+            (h / z - 2.0 + z / h, 1.0 / h - h / (z * z), 2.0 * h / (z * z * z))
+        } else {
+            (f64::INFINITY, 0.0, 0.0)
         }
     }
 
@@ -259,9 +216,10 @@ impl Barrier<'_> {
         let p = self.problem.corners_of(hex, points);
         let mut value = 0.0;
         let mut gradient = [[0.0; 3]; 8];
-        let frame = Frame::new(&p).0;
+        let frame = Frame::new(&p);
+        self.floors.add(&self.problem.hexes[hex], &frame, &mut value, &mut gradient);
+        let frame = frame.0;
         let inverse = frame.map(|d| d.map(|e| 1.0 / norm(e)));
-        self.resist(hex, &frame, &inverse, &mut value, &mut gradient);
         for n in CORNER_MIXED {
             let [i, j, k] = MIXED[n].edges;
             let c = [frame[0][i], frame[1][j], frame[2][k]];
@@ -340,8 +298,8 @@ mod tests {
         let mut points: Vec<Vector> = (0..27).map(|v| [v % 3, v / 3 % 3, v / 9].map(f64::from)).collect();
         points[13] = std::array::from_fn(|k| points[13][k] + 0.4 * random.signed());
         let inner = vec![vec![[0.5, 0.25, 0.5]]; 8];
-        // Edges of about 1, some of which resist.
-        let floors: Vec<f64> = (0..27).map(|v| if v == 13 { 1.2 } else { f64::INFINITY }).collect();
+        let far: Vec<Vector> = points.iter().map(|p| p.map(|x| 2.5 * x)).collect();
+        let floors = Floors::new(&problem, &far);
         let barrier = Barrier { problem: &problem, inner: &inner, floors: &floors, t: 0.1, height: 0.9 };
         let total = |points: &[Vector]| (0..8).map(|h| barrier.hex(h, points).0).sum::<f64>();
         let mut gradient = vec![0.0; 3];
@@ -360,8 +318,8 @@ mod tests {
             total(&moved) == f64::INFINITY
         };
         assert!(closed([5.0, 0.0, 0.0]));
-        // Valid, but an edge of half its floor.
-        assert!(closed([1.0, 1.0, 0.59]) && !closed([1.0, 1.0, 0.61]));
+        // Valid, but with an edge too short.
+        assert!(closed([1.0, 1.0, 0.3]) && !closed([1.0, 1.0, 0.8]));
     }
 
     #[test]
@@ -380,7 +338,7 @@ mod tests {
         assert!(before > 0.0 && before < 0.4, "{before}");
         let incidence = Incidence::new(&problem);
         let mut left = visits(problem.hexes.len());
-        let lengths = floors(&problem, &points);
+        let lengths = Floors::new(&problem, &points);
         lift(&problem, &incidence, &mut points, &lengths, 0.9, &mut left, &Context::default());
         let after = judge(&problem, &points, 1.0).worst;
         assert!(after > 0.7, "{before} {after}");

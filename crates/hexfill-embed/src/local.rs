@@ -5,6 +5,7 @@
 //! same way: the worst cells are seeds, and each patch climbs with its own linear programs.
 //! Results of a round are written back in the order of the patches, whatever the threads did.
 
+use crate::lengths::Floors;
 use crate::lift;
 use crate::maxmin::{self, Goal};
 use crate::patch::{Incidence, Patch, patches};
@@ -156,7 +157,7 @@ pub(crate) fn raise_large(
     context: &Context<'_>,
 ) -> Option<StopReason> {
     let incidence = Incidence::new(problem);
-    let floors = lift::floors(problem, points);
+    let floors = Floors::new(problem, points);
     let mut visits = lift::visits(problem.hexes.len());
     for _ in 0..TURNS {
         let stopped = lift::lift(problem, &incidence, points, &floors, target, &mut visits, context);
