@@ -301,6 +301,25 @@ impl Front {
         all
     }
 
+    /// The vertices joined to both by an edge, ascending; `b` had better be the one with fewer hexes.
+    pub(crate) fn common_neighbours(&self, a: u32, b: u32) -> Vec<u32> {
+        let near = self.neighbours(b);
+        let mut common = vec![false; near.len()];
+        let mut mark = |v: &u32| {
+            if let Ok(i) = near.binary_search(v) {
+                common[i] = true;
+            }
+        };
+        self.surface_neighbours[a as usize].iter().for_each(&mut mark);
+        for &h in &self.star[a as usize] {
+            let hex = &self.hexes[h as usize];
+            for i in (0..8).filter(|&i| hex[i] == a) {
+                hexfill_mesh::cube::CORNER_NEIGHBOURS[i].iter().for_each(|&k| mark(&hex[k]));
+            }
+        }
+        near.into_iter().zip(common).filter(|(_, common)| *common).map(|(v, _)| v).collect()
+    }
+
     /// States how many hexes are wanted round each front edge: on the surface its angle / 90 degrees, inside 4 less those that are there.
     pub fn set_wants(&mut self, want: impl Fn(u32, u32) -> f32) {
         self.want = vec![0.0; self.origin.len()];
@@ -441,7 +460,7 @@ impl Front {
         self.star[v as usize].push(h);
     }
 
-    /// Renames vertex `from` to `to` in the hexes and on the front. The pairs of the hexes concerned must be out of the table.
+    /// Renames vertex `from` to `to` in the hexes. The pair table is not told yet.
     pub(crate) fn rename(&mut self, from: u32, to: u32) {
         for i in 0..self.star[from as usize].len() {
             let h = self.star[from as usize][i];
@@ -461,10 +480,15 @@ impl Front {
         pairs.add_hex(&self.hexes[h as usize], |old| journal.push(Change::Pair(old)))
     }
 
-    /// Takes the pairs of a hex out of the table.
-    pub(crate) fn remove_pairs(&mut self, h: u32) {
-        let (pairs, journal) = (&mut self.pairs, &mut self.journal);
-        pairs.remove_hex(&self.hexes[h as usize], |old| journal.push(Change::Pair(old)));
+    /// Tells the pair table that hexes (each with its corners as the table knows them) have others now; `false` at a clash.
+    pub(crate) fn update_pairs(&mut self, renamed: &[(u32, [u32; 8])]) -> bool {
+        let (pairs, journal, hexes) = (&mut self.pairs, &mut self.journal, &self.hexes);
+        for (h, before) in renamed {
+            pairs.remove_changed(before, &hexes[*h as usize], |old| journal.push(Change::Pair(old)));
+        }
+        renamed
+            .iter()
+            .all(|(h, before)| pairs.add_changed(before, &hexes[*h as usize], |old| journal.push(Change::Pair(old))))
     }
 
     /// The slots of quads that changed since `mark`, ascending; for those who keep something per quad.
