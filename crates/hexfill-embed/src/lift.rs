@@ -4,14 +4,16 @@
 //! patch `sum phi(s - t)` over the corners (and the inner points of cells where the worst was seen) is minimised by L-BFGS, where
 //! `phi(z) = (h - z)^2 / (h z)` below `h = tau - t` and 0 above, and t is a share of the patch's worst value: a barrier at t that
 //! pulls at every cell below tau, the worst most, and is 0 elsewhere, so a patch ends where its cells are good and the
-//! patches are independent. A patch is written back only if its worst value over whole cells rose, as judged by
-//! bisection. Then tau is raised, as long as the worst value follows. All bounds are counts, so the result does not depend on
-//! the machine or the threads; the work is about linear in the number of poor cells.
+//! patches are independent. A scaled Jacobian does not know lengths, and may have its optimum in the limit of a vanishing
+//! star only: so edges that have become short have a barrier of their own ([`crate::lengths`]). A patch is written back only if its worst value over
+//! whole cells rose, as judged by bisection. Then tau is raised, as long as the worst value follows. All bounds are counts, so
+//! the result does not depend on the machine or the threads; the work is about linear in the number of poor cells.
 
 use crate::jacobian::{
     CORNER_MIXED, FRAME_EDGES, Frame, MIXED, add_by_corner, columns, scaled, scaled_with_gradient, weights_at,
 };
 use crate::lbfgs::{self, minimise};
+use crate::lengths::Floors;
 use crate::maxmin::{judge, judge_near_worst};
 use crate::patch::{Incidence, Patch, patches};
 use crate::problem::Problem;
@@ -36,6 +38,9 @@ const NARROWEST: f64 = 0.06;
 const ITERATIONS: usize = 30;
 const RESTARTS: usize = 3;
 
+/// A level ends so far beyond the target, in units of it: what is aimed at is reached in the limit only.
+const BEYOND: f64 = 5e-4;
+
 /// Inner points watched in a cell at most.
 const WATCHED: usize = 16;
 
@@ -49,11 +54,13 @@ pub(crate) fn lift(
     problem: &Problem,
     incidence: &Incidence,
     points: &mut [Vector],
+    floors: &Floors,
     target: f64,
     visits: &mut usize,
     context: &Context<'_>,
 ) -> Option<StopReason> {
     let n_hexes = problem.hexes.len();
+    let floors = floors.lowered(problem, points);
     // In units of the worst value.
     let mut reach = 1.0;
     let mut rings = 1;
@@ -65,7 +72,7 @@ pub(crate) fn lift(
         if worst <= 0.0 || worst >= target {
             return None;
         }
-        let tau = (worst + reach * worst.max(LEAST_REACH)).min(target);
+        let tau = (worst + reach * worst.max(LEAST_REACH)).min(target + BEYOND * target.abs());
         let cells = judge(problem, points, tau);
         let seeds: Vec<usize> = (0..n_hexes).filter(|&h| cells.each[h].0 < tau).collect();
         let parts = patches(problem, incidence, &seeds, rings);
@@ -83,8 +90,10 @@ pub(crate) fn lift(
         *visits -= size;
         let quiet = Context { progress: None, ..*context };
         let before = &*points;
-        let better: Vec<Option<Vec<Vector>>> =
-            parts.par_iter().map(|part| lift_patch(part, part.points(before), tau, &quiet)).collect();
+        let better: Vec<Option<Vec<Vector>>> = parts
+            .par_iter()
+            .map(|part| lift_patch(part, part.points(before), &floors.of_part(part), tau, &quiet))
+            .collect();
         for (part, better) in parts.iter().zip(better) {
             if let Some(better) = better {
                 part.write_back(&better, points);
@@ -109,7 +118,13 @@ pub(crate) fn lift(
 }
 
 /// Lifts one patch; `None` if its worst cell did not get better.
-fn lift_patch(part: &Patch, points: Vec<Vector>, tau: f64, context: &Context<'_>) -> Option<Vec<Vector>> {
+fn lift_patch(
+    part: &Patch,
+    points: Vec<Vector>,
+    floors: &Floors,
+    tau: f64,
+    context: &Context<'_>,
+) -> Option<Vec<Vector>> {
     let problem = &part.problem;
     let before = judge(problem, &points, tau);
     if before.worst <= 0.0 || problem.n_variables() == 0 {
@@ -122,7 +137,7 @@ fn lift_patch(part: &Patch, points: Vec<Vector>, tau: f64, context: &Context<'_>
         }
         let mut trial = points.clone();
         let t = share * before.worst;
-        Barrier { problem, inner: &inner, t, height: tau - t }.descend(&mut trial, context);
+        Barrier { problem, inner: &inner, floors, t, height: tau - t }.descend(&mut trial, context);
         let after = judge(problem, &trial, tau);
         if after.worst > before.worst {
             return Some(trial);
@@ -146,6 +161,7 @@ fn watched((worst, seen): &(f64, Vec<Vector>), tau: f64) -> Vec<Vector> {
 struct Barrier<'a> {
     problem: &'a Problem,
     inner: &'a [Vec<Vector>],
+    floors: &'a Floors,
     /// Where the barrier is infinite.
     t: f64,
     /// How far above t it ends.
@@ -200,7 +216,9 @@ impl Barrier<'_> {
         let p = self.problem.corners_of(hex, points);
         let mut value = 0.0;
         let mut gradient = [[0.0; 3]; 8];
-        let frame = Frame::new(&p).0;
+        let frame = Frame::new(&p);
+        self.floors.add(&self.problem.hexes[hex], &frame, &mut value, &mut gradient);
+        let frame = frame.0;
         let inverse = frame.map(|d| d.map(|e| 1.0 / norm(e)));
         for n in CORNER_MIXED {
             let [i, j, k] = MIXED[n].edges;
@@ -273,7 +291,26 @@ mod tests {
 
     #[test]
     fn gradient_matches_differences_and_the_barrier_is_closed() {
-        check_barrier(|problem, inner, h, points| Barrier { problem, inner, t: 0.1, height: 0.9 }.hex(h, points));
+        check_barrier(|problem, inner, h, points| {
+            let floors = Floors::new(problem, &grid_points(2));
+            Barrier { problem, inner, floors: &floors, t: 0.1, height: 0.9 }.hex(h, points)
+        });
+    }
+
+    #[test]
+    fn edges_that_are_too_short_resist() {
+        let mesh = grid(2);
+        let problem = Problem::new(27, mesh.hexes_raw(), &mesh.boundary_vertices());
+        let mut points = grid_points(2);
+        let floors = Floors::new(&problem, &points.iter().map(|p| p.map(|x| 2.5 * x)).collect::<Vec<_>>());
+        let inner = vec![Vec::new(); 8];
+        let barrier = Barrier { problem: &problem, inner: &inner, floors: &floors, t: 0.1, height: 0.9 };
+        let mut closed = |p: Vector| {
+            points[13] = p;
+            (0..8).map(|h| barrier.hex(h, &points).0).sum::<f64>() == f64::INFINITY
+        };
+        // Valid, but with an edge too short.
+        assert!(closed([1.0, 1.0, 0.3]) && !closed([1.0, 1.0, 0.8]));
     }
 
     #[test]
@@ -291,7 +328,8 @@ mod tests {
         assert!(before > 0.0 && before < 0.4, "{before}");
         let incidence = Incidence::new(&problem);
         let mut left = visits(problem.hexes.len());
-        lift(&problem, &incidence, &mut points, 0.9, &mut left, &Context::default());
+        let lengths = Floors::new(&problem, &points);
+        lift(&problem, &incidence, &mut points, &lengths, 0.9, &mut left, &Context::default());
         let after = judge(&problem, &points, 1.0).worst;
         assert!(after > 0.7, "{before} {after}");
         assert!(left > visits(problem.hexes.len()) / 2);

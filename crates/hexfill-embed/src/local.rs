@@ -5,6 +5,7 @@
 //! same way: the worst cells are seeds, and each patch climbs with its own linear programs.
 //! Results of a round are written back in the order of the patches, whatever the threads did.
 
+use crate::lengths::Floors;
 use crate::lift;
 use crate::maxmin::{self, Goal};
 use crate::patch::{Incidence, Patch, patches};
@@ -87,6 +88,16 @@ pub(crate) fn untangle_whole(
     (bad, stopped)
 }
 
+/// Lets the cells of a valid mesh become round, all at once, by one minimisation of the energy of shapes: means of neighbours squeeze
+/// what lies along the surface. Nothing changes if that leaves a cell that is not valid.
+pub(crate) fn round_shapes(problem: &Problem, points: &mut [Vector], context: &Context<'_>) {
+    let mut trial = points.to_vec();
+    untangle(problem, &mut trial, UntangleLimits { rounds: 1, ..UntangleLimits::new() }, context);
+    if bad_cells(problem, &trial).is_empty() {
+        points.copy_from_slice(&trial);
+    }
+}
+
 /// Solves every patch from the same `points` and writes a result back if it has fewer bad cells, or as many and a
 /// better worst cell.
 fn each(
@@ -146,9 +157,10 @@ pub(crate) fn raise_large(
     context: &Context<'_>,
 ) -> Option<StopReason> {
     let incidence = Incidence::new(problem);
+    let floors = Floors::new(problem, points);
     let mut visits = lift::visits(problem.hexes.len());
     for _ in 0..TURNS {
-        let stopped = lift::lift(problem, &incidence, points, target, &mut visits, context);
+        let stopped = lift::lift(problem, &incidence, points, &floors, target, &mut visits, context);
         let lifted = maxmin::judge_near_worst(problem, points, 0.0, 0.0).worst;
         let stopped = stopped.or_else(|| climb_worst(problem, &incidence, points, target, ROUNDS, context));
         let climbed = maxmin::judge_near_worst(problem, points, 0.0, 0.0).worst;

@@ -18,6 +18,11 @@ pub(crate) struct Patch {
 impl Patch {
     /// The points of the part.
     pub(crate) fn points(&self, whole: &[Vector]) -> Vec<Vector> {
+        self.of_vertices(whole)
+    }
+
+    /// What belongs to the vertices of the part.
+    pub(crate) fn of_vertices<T: Copy>(&self, whole: &[T]) -> Vec<T> {
         self.vertices.iter().map(|&v| whole[v as usize]).collect()
     }
 

@@ -1,13 +1,15 @@
 //! Raises the worst scaled Jacobian of meshes of any size by smooth barriers.
 //!
 //! Linear programs ([`crate::maxmin`]) find the last digits on small meshes but cost much from some hundred hexes on. Here
-//! `sum psi((s - t) / w)` over the corners (and the inner points of cells where the worst was seen) is minimised by L-BFGS, with `psi(z) = z - 1 - ln z` below 1
-//! and 0 above: a barrier that keeps every value above t and acts on those below t + w only, so good cells stay where they are.
-//! Then t follows the worst value upwards; the distance to it and the width shrink when nothing is gained. A step counts only if the
-//! worst value over whole cells rises, as judged by bisection, so validity is never traded for corners.
+//! `sum psi((s - t) / w)` over the corners (and the inner points of cells where the worst was seen) is minimised by L-BFGS, with
+//! `psi(z) = z - 1 - ln z` below 1 and 0 above: a barrier that keeps every value above t and acts on those below t + w only, so
+//! good cells stay where they are. Edges that have become short have a barrier of their own ([`crate::lengths`]). Then t follows
+//! the worst value upwards; the distance to it and the width shrink when nothing is gained. A step counts only if the worst
+//! value over whole cells rises, as judged by bisection, so validity is never traded for corners.
 
-use crate::jacobian::{add_by_corner, columns, scaled_with_gradient, weights_at};
+use crate::jacobian::{Frame, add_by_corner, columns, scaled_with_gradient, weights_at};
 use crate::lbfgs::{self, minimise};
+use crate::lengths::Floors;
 use crate::maxmin::{Cells, judge_near_worst};
 use crate::problem::Problem;
 use crate::vector::{Vector, sub};
@@ -41,6 +43,7 @@ pub(crate) fn raise(
         return None;
     }
     let mut cells = judge_near_worst(problem, points, 0.0, SEEN);
+    let floors = Floors::new(problem, points);
     let mut inner: Vec<Vec<Vector>> = vec![Vec::new(); problem.hexes.len()];
     let mut level = 0;
     let mut gap = 0.5;
@@ -57,7 +60,13 @@ pub(crate) fn raise(
         });
         let width = WIDTHS[level];
         // t stays below the worst by a share of the width, or of the worst itself.
-        let barrier = Barrier { problem, inner: &inner, t: worst - gap * width.min(2.0 * worst.max(0.01)), width };
+        let barrier = Barrier {
+            problem,
+            inner: &inner,
+            floors: &floors,
+            t: worst - gap * width.min(2.0 * worst.max(0.01)),
+            width,
+        };
         let mut trial = points.clone();
         let stopped = barrier.descend(&mut trial, limits.iterations, context);
         let trial_cells = judge_near_worst(problem, &trial, worst, SEEN);
@@ -106,6 +115,7 @@ fn note_inner(cells: &Cells, limit: f64, inner: &mut [Vec<Vector>]) -> bool {
 struct Barrier<'a> {
     problem: &'a Problem,
     inner: &'a [Vec<Vector>],
+    floors: &'a Floors,
     t: f64,
     width: f64,
 }
@@ -143,6 +153,7 @@ impl Barrier<'_> {
         let p = self.problem.corners_of(hex, points);
         let mut value = 0.0;
         let mut gradient = [[0.0; 3]; 8];
+        self.floors.add(&self.problem.hexes[hex], &Frame::new(&p), &mut value, &mut gradient);
         let mut psi = |s: f64| {
             let z = (s - self.t) / self.width;
             if z >= 1.0 {
@@ -194,7 +205,10 @@ mod tests {
 
     #[test]
     fn gradient_matches_differences_and_the_barrier_is_closed() {
-        check_barrier(|problem, inner, h, points| Barrier { problem, inner, t: 0.1, width: 0.9 }.hex(h, points));
+        check_barrier(|problem, inner, h, points| {
+            let floors = Floors::new(problem, &grid_points(2));
+            Barrier { problem, inner, floors: &floors, t: 0.1, width: 0.9 }.hex(h, points)
+        });
     }
 
     #[test]

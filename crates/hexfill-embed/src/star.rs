@@ -166,7 +166,7 @@ fn angle_bound(corners: &[[u32; 3]], direction: impl Fn(u32) -> Option<Vector>) 
 }
 
 /// The determinant of three unit vectors with equal angles that span this solid angle.
-fn equilateral(solid: f64) -> f64 {
+pub(crate) fn equilateral(solid: f64) -> f64 {
     let cos_angle = ((solid + std::f64::consts::PI) / 3.0).cos();
     let c = cos_angle / (1.0 - cos_angle);
     (1.0 - c) * (1.0 + 2.0 * c).max(0.0).sqrt()

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Sample, assert_boundary_kept, certified, grid};
+use common::{Sample, assert_boundary_kept, ball, certified, grid};
 use hexfill_embed::{Objective, Options, embed, star_bounds, tutte_start};
 use hexfill_mesh::{Context, HexMesh, StopReason};
 use std::time::{Duration, Instant};
@@ -291,4 +291,26 @@ fn a_time_limit_returns_the_best_so_far() {
     assert_eq!(done.report.stop, StopReason::TimeLimit);
     assert!(before.elapsed() < Duration::from_secs(5));
     assert_eq!(done.points.len(), mesh.n_vertices());
+}
+
+/// A corner of the cube behind the pillow has four hexes, whose best is reached in the limit of a vanishing star only. The way
+/// by parts starts there from squeezed cells.
+#[test]
+fn a_ball_behind_a_pillow_keeps_its_edges() {
+    let n = 14;
+    let (mesh, points) = ball(n);
+    assert_eq!(mesh.n_hexes(), n * n * n + 6 * n * n);
+    let mut options = Options::default();
+    options.starts = 1;
+    options.smooth_start = true;
+    for local_limit in [1000, 20_000] {
+        options.local_limit = local_limit;
+        let done = embed(&mesh, &points, Some(&points), &options, &Context::default()).unwrap();
+        // Edges of the surface are 0.07 and longer.
+        assert!(done.report.shortest_edge > 0.01, "{local_limit} {}", done.report.shortest_edge);
+        assert!(done.report.condition < 10.0, "{local_limit} {}", done.report.condition);
+        let (valid, [lower, _]) = certified(&mesh, &done.points);
+        assert!(valid && lower >= 0.99 * done.report.upper_bound, "{local_limit} {lower}");
+        assert!((done.report.upper_bound - 4.0 / 27f64.sqrt()).abs() < 1e-9, "{}", done.report.upper_bound);
+    }
 }

@@ -265,6 +265,25 @@ impl Front {
         all
     }
 
+    /// The vertices joined to both by an edge, ascending; `b` had better be the one with fewer hexes.
+    pub(crate) fn common_neighbours(&self, a: u32, b: u32) -> Vec<u32> {
+        let near = self.neighbours(b);
+        let mut common = vec![false; near.len()];
+        let mut mark = |v: &u32| {
+            if let Ok(i) = near.binary_search(v) {
+                common[i] = true;
+            }
+        };
+        self.surface_neighbours[a as usize].iter().for_each(&mut mark);
+        for &h in &self.star[a as usize] {
+            let hex = &self.hexes[h as usize];
+            for i in (0..8).filter(|&i| hex[i] == a) {
+                hexfill_mesh::cube::CORNER_NEIGHBOURS[i].iter().for_each(|&k| mark(&hex[k]));
+            }
+        }
+        near.into_iter().zip(common).filter(|(_, common)| *common).map(|(v, _)| v).collect()
+    }
+
     /// States how many hexes are wanted round each front edge: on the surface its angle / 90 degrees, inside 4 less those that are there.
     pub fn set_wants(&mut self, want: impl Fn(u32, u32) -> f32) {
         self.want = vec![0.0; self.origin.len()];

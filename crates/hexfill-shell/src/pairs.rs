@@ -53,6 +53,14 @@ fn pairs_of_hex(h: &[u32; 8]) -> impl Iterator<Item = (u32, u32, Join)> + '_ {
     edges.chain(diagonals).chain(BODY_DIAGONALS.iter().map(|&[i, j]| (h[i], h[j], Join::Body)))
 }
 
+/// The pairs of a hex that are others once it has other corners: before and after.
+fn changed<'h>(
+    before: &'h [u32; 8],
+    after: &'h [u32; 8],
+) -> impl Iterator<Item = ((u32, u32, Join), (u32, u32, Join))> + 'h {
+    pairs_of_hex(before).zip(pairs_of_hex(after)).filter(|(b, a)| b != a)
+}
+
 /// The 6 pairs of a quad.
 fn pairs_of_quad(q: &[u32; 4]) -> [(u32, u32, Join); 6] {
     let [a, b, c, d] = *q;
@@ -117,9 +125,14 @@ impl PairTable {
         pairs_of_hex(hex).all(|p| self.add(p, &mut old))
     }
 
-    /// Takes the pairs of a hex out.
-    pub(crate) fn remove_hex(&mut self, hex: &[u32; 8], mut old: impl FnMut(OldPair)) {
-        pairs_of_hex(hex).for_each(|p| self.remove(p, &mut old));
+    /// Takes those pairs of a hex out that it will not have once its corners are `after`.
+    pub(crate) fn remove_changed(&mut self, before: &[u32; 8], after: &[u32; 8], mut old: impl FnMut(OldPair)) {
+        changed(before, after).for_each(|(p, _)| self.remove(p, &mut old));
+    }
+
+    /// Adds those pairs of a hex that it did not have when its corners were `before`; `false` at the first clash.
+    pub(crate) fn add_changed(&mut self, before: &[u32; 8], after: &[u32; 8], mut old: impl FnMut(OldPair)) -> bool {
+        changed(before, after).all(|(_, p)| self.add(p, &mut old))
     }
 
     /// Adds the pairs of a quad of the surface; `false` at the first clash.

@@ -38,8 +38,11 @@ pub enum Refused {
 pub(crate) struct Pending {
     /// Vertices whose degree fell.
     pub(crate) queue: Vec<u32>,
-    /// Hexes whose pairs are out of the table.
+    /// New hexes, whose pairs are not in the table yet.
     pub(crate) hexes: Vec<u32>,
+    /// Hexes that were renamed, each with its corners before; the first entry of a hex is what the table knows. Most flips that are
+    /// refused are so before the table has to be asked.
+    renamed: Vec<(u32, [u32; 8])>,
     /// One entry for each front edge too many between two vertices.
     pub(crate) double: Vec<[u32; 2]>,
     /// Darts of edges that stay on the front with fewer hexes wanted.
@@ -97,9 +100,11 @@ impl Front {
         if !pending.double.is_empty() {
             return Err(Refused::DoubleEdge);
         }
-        pending.hexes.sort_unstable();
-        pending.hexes.dedup();
-        if !pending.hexes.into_iter().all(|h| self.add_pairs(h)) {
+        // Stable: the first entry of a hex stays first.
+        pending.renamed.sort_by_key(|r| r.0);
+        pending.renamed.dedup_by_key(|r| r.0);
+        pending.renamed.retain(|r| !pending.hexes.contains(&r.0));
+        if !self.update_pairs(&pending.renamed) || !pending.hexes.into_iter().all(|h| self.add_pairs(h)) {
             return Err(Refused::Improper);
         }
         let mut rim = pending.rim;
@@ -252,16 +257,8 @@ impl Front {
         if self.star(gone).iter().any(|&h| self.hexes()[h as usize].contains(&kept)) {
             return Err(Refused::Improper);
         }
-        let near = self.neighbours(kept);
-        let common = self.neighbours(gone).into_iter().filter(|v| near.binary_search(v).is_ok());
-        let common: Vec<u32> = common.collect();
-        for i in 0..self.star(gone).len() {
-            let h = self.star(gone)[i];
-            if !pending.hexes.contains(&h) {
-                self.remove_pairs(h);
-                pending.hexes.push(h);
-            }
-        }
+        let common = self.common_neighbours(kept, gone);
+        pending.renamed.extend(self.star(gone).iter().map(|&h| (h, self.hexes()[h as usize])));
         let round: Vec<u32> = self.round_vertex(self.dart_of(gone)).collect();
         for d in round {
             self.set_origin(d, kept);

@@ -306,7 +306,7 @@ impl<'a> Trial<'a> {
     fn polish(&mut self) {
         let limited = self.limited();
         let Some((_, filled, placed)) = &mut self.best else { return };
-        let open = placed.embedding.as_ref().is_some_and(|e| placed.worst() < RELATIVE * e.upper_bound);
+        let open = placed.embedding.as_ref().is_some_and(|e| placed.worst() < RELATIVE * e.target);
         if filled.route != Route::Shelling || !placed.is_certified() || !open || limited.stop().is_some() {
             return;
         }
@@ -354,7 +354,7 @@ impl<'a> Trial<'a> {
     }
 }
 
-/// A worst scaled Jacobian of this share of its upper bound is not raised further.
+/// A worst scaled Jacobian of this share of what was strived for is not raised further.
 const RELATIVE: f64 = 0.999;
 
 fn words(filled: &Filled) -> String {

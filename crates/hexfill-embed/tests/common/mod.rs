@@ -52,6 +52,29 @@ pub fn grid(n: usize, noise: f64) -> (HexMesh, Vec<[f64; 3]>) {
     (HexMesh::try_new(points.len(), &hexes).unwrap(), points)
 }
 
+/// A ball: the cube cut into n x n x n hexes behind a pillow of 6 n^2, whose outer vertices lie on the unit sphere; and first points.
+pub fn ball(n: usize) -> (HexMesh, Vec<[f64; 3]>) {
+    let (cube, points) = grid(n, 0.0);
+    let mut points: Vec<[f64; 3]> = points.iter().map(|p| p.map(|x| x - 0.5)).collect();
+    let mut outer = vec![u32::MAX; points.len()];
+    for (v, _) in cube.boundary_vertices().iter().enumerate().filter(|(_, on)| **on) {
+        let p = points[v];
+        let length = p.iter().map(|x| x * x).sum::<f64>().sqrt();
+        outer[v] = points.len() as u32;
+        points.push(p.map(|x| x / length));
+    }
+    let mut hexes = cube.hexes_raw();
+    for facet in hexes.clone().iter().flat_map(|h| hexfill_mesh::cube::FACETS.map(|f| f.map(|i| h[i]))) {
+        // A facet belongs to the boundary if all its vertices have one coordinate at the end of its range.
+        let on = |k: usize, end: f64| facet.iter().all(|&v| points[v as usize][k] == end);
+        if (0..3).any(|k| on(k, -0.5) || on(k, 0.5)) {
+            let [a, b, c, d] = facet;
+            hexes.push([a, b, c, d, outer[a as usize], outer[b as usize], outer[c as usize], outer[d as usize]]);
+        }
+    }
+    (HexMesh::try_new(points.len(), &hexes).unwrap(), points)
+}
+
 /// Whether the independent judge certifies det J > 0 in every hex, and its certified interval of the worst scaled Jacobian.
 pub fn certified(mesh: &HexMesh, points: &[[f64; 3]]) -> (bool, [f64; 2]) {
     let hexes = mesh.hexes_raw();

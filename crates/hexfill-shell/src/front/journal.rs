@@ -125,7 +125,7 @@ impl Front {
         self.star[v as usize].push(h);
     }
 
-    /// Renames vertex `from` to `to` in the hexes and on the front. The pairs of the hexes concerned must be out of the table.
+    /// Renames vertex `from` to `to` in the hexes. The pair table is not told yet.
     pub(crate) fn rename(&mut self, from: u32, to: u32) {
         for i in 0..self.star[from as usize].len() {
             let h = self.star[from as usize][i];
@@ -145,10 +145,15 @@ impl Front {
         pairs.add_hex(&self.hexes[h as usize], |old| journal.push(Change::Pair(old)))
     }
 
-    /// Takes the pairs of a hex out of the table.
-    pub(crate) fn remove_pairs(&mut self, h: u32) {
-        let (pairs, journal) = (&mut self.pairs, &mut self.journal);
-        pairs.remove_hex(&self.hexes[h as usize], |old| journal.push(Change::Pair(old)));
+    /// Tells the pair table that hexes (each with its corners as the table knows them) have others now; `false` at a clash.
+    pub(crate) fn update_pairs(&mut self, renamed: &[(u32, [u32; 8])]) -> bool {
+        let (pairs, journal, hexes) = (&mut self.pairs, &mut self.journal, &self.hexes);
+        for (h, before) in renamed {
+            pairs.remove_changed(before, &hexes[*h as usize], |old| journal.push(Change::Pair(old)));
+        }
+        renamed
+            .iter()
+            .all(|(h, before)| pairs.add_changed(before, &hexes[*h as usize], |old| journal.push(Change::Pair(old))))
     }
 
     /// The slots of quads that changed since `mark`, ascending; for those who keep something per quad.
