@@ -248,7 +248,7 @@ impl<'a> Trial<'a> {
             one.programs = one.programs.min(SCREENING);
             one.smooth_start = true;
             let placed = place_as_it_is(&filled, self.boundary, Some(&one), &self.limited());
-            self.from_coarse(&filled, placed, one)
+            self.placed_from_coarse(&filled, placed, one)
         } else {
             place(&mut filled, self.problem, self.boundary, Some(self.embed), &self.limited())
         };
@@ -263,7 +263,7 @@ impl<'a> Trial<'a> {
 
     /// A mesh that was placed, or placed once more if it is not good: from the positions of the coarse mesh it was lifted from, which has
     /// few hexes and is often valid where the fine one is not.
-    fn from_coarse(&self, filled: &Filled, placed: Placed, mut how: hexfill_embed::Options) -> Placed {
+    fn placed_from_coarse(&self, filled: &Filled, placed: Placed, mut how: hexfill_embed::Options) -> Placed {
         let is_good = placed.is_certified() && placed.worst() >= GOOD;
         let Some(coarse) = filled.coarse.as_ref().filter(|_| !is_good && self.ctx.stop().is_none()) else {
             return placed;
