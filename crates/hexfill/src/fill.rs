@@ -2,6 +2,7 @@
 
 use crate::choose::Prefer;
 use crate::components::{fill_apart, solids};
+use crate::effort::Effort;
 use crate::geometry::boundary_points;
 use crate::last_resort::{LastResort, leaving_time};
 use crate::problem::Problem;
@@ -82,6 +83,8 @@ pub struct FillOptions {
     pub simplify: Option<SimplifyOptions>,
     /// How to shell.
     pub shell: ShellOptions,
+    /// How long to look for a better mesh, where there are coordinates.
+    pub effort: Effort,
     /// What to prefer among certified meshes.
     pub prefer: Prefer,
     /// Boundary layers under the whole surface, cut once the mesh has positions; `None`: none.
@@ -104,6 +107,7 @@ impl Default for FillOptions {
             cells: CellChoice::Embeddable,
             simplify: None,
             shell: ShellOptions::default(),
+            effort: Effort::default(),
             prefer: Prefer::default(),
             layers: None,
         }
@@ -115,6 +119,8 @@ impl Default for FillOptions {
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Route {
+    /// The best known mesh of a surface of the catalogue.
+    Catalogue,
     /// Looked up in the atlas.
     Atlas,
     /// Swept inward by the surface's dual curves.

@@ -15,6 +15,7 @@
 pub mod catalog;
 mod choose;
 mod components;
+mod effort;
 mod fill;
 mod geometry;
 mod last_resort;
@@ -23,8 +24,10 @@ mod placed_fill;
 mod placement;
 mod problem;
 mod simplify;
+mod stored;
 
 pub use choose::Prefer;
+pub use effort::Effort;
 pub use fill::{
     FillError, FillOptions, FillReport, FillResult, Filled, InteriorFrom, Route, Strategy, check_fillable, fill,
     mesh_data,

@@ -43,6 +43,12 @@ pub struct FillArgs {
     /// Which mesh to prefer among those that are certified with a worst scaled Jacobian of at least 0.2.
     #[arg(long, value_enum, default_value = "balance")]
     prefer: PreferArg,
+    /// The first mesh with a certificate, in a fraction of the time.
+    #[arg(long, conflicts_with = "best")]
+    fast: bool,
+    /// Look on though a good mesh is found: more candidates, each raised as far as it goes; many times the time (see --time-limit).
+    #[arg(long)]
+    best: bool,
     /// Put this many layers of hexahedra under the whole surface (boundary layers for flow).
     #[arg(long, value_name = "K", conflicts_with_all = ["count", "best_of", "no_embed", "improve"], value_parser = clap::value_parser!(u32).range(1..=1000))]
     layers: Option<u32>,
@@ -281,6 +287,11 @@ fn fill_options(args: &FillArgs, own_log: Option<PathBuf>, ctx: &Context<'_>) ->
         },
         simplify: simplification(args, ctx),
         shell: hexfill::ShellOptions::default(),
+        effort: match (args.fast, args.best) {
+            (true, _) => hexfill::Effort::Fast,
+            (_, true) => hexfill::Effort::Best,
+            _ => hexfill::Effort::Normal,
+        },
         prefer: match args.prefer {
             PreferArg::Balance => hexfill::Prefer::Balance,
             PreferArg::Hexes => hexfill::Prefer::Hexes,
@@ -415,6 +426,9 @@ fn say(output: &Output, args: &FillArgs, console: &Console) {
         match &mesh.geometry {
             Some(geometry) => {
                 console.say(format!("geometry: {geometry}"));
+                if let Some(line) = geometry.distribution().filter(|_| geometry.hexes > 1) {
+                    console.say(format!("scaled Jacobians: {line}"));
+                }
                 if geometry.ways > 1 {
                     let ways = geometry.ways;
                     console
