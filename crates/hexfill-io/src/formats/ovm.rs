@@ -3,14 +3,15 @@
 //! Half-edge `2 e` runs as edge `e`, `2 e + 1` against it; half-face `2 f` is face `f`, `2 f + 1` its reverse. The half-faces of
 //! a cell are counter-clockwise seen from inside. On writing, the faces of the mesh come first, as they are, then the other
 //! facets of the hexes. On reading, the faces are those marked by our own property `hexfill:face`, otherwise all that have at most
-//! one cell. A second property keeps the first corner of each hex, because half-faces know the cell only up to rotation.
+//! one cell. Other properties are tags and data; names of tags are kept in comments. A second property keeps the first corner of each hex, because half-faces know the cell only up to rotation.
 
-use crate::assembly::Assembly;
+use crate::arrays::{self, component};
+use crate::assembly::{Assembly, Slot, Values};
 use crate::data::MeshData;
 use crate::error::ReadError;
 use crate::orders::OVM_HALF_FACES;
 use crate::source::{Source, reserve};
-use crate::write::{has_cell_tags, write_point};
+use crate::write::{Real, has_cell_tags, unquoted, write_point};
 use rustc_hash::FxHashMap;
 use std::io::{self, Write};
 
@@ -25,6 +26,27 @@ struct Properties {
     cell_tags: Option<Vec<i64>>,
     face_marks: Option<Vec<i64>>,
     corners: Option<Vec<i64>>,
+    /// Other properties: on what, name, components, values.
+    arrays: Vec<(On, String, usize, Vec<f64>)>,
+}
+
+/// What a property is on.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum On {
+    Points,
+    Faces,
+    Cells,
+}
+
+/// How many numbers a value of a type has; 0 for a type that is no number.
+fn components_of(scalar: &str) -> usize {
+    match scalar {
+        "int" | "long" | "short" | "char" | "unsigned int" | "uint" | "float" | "double" | "bool" => 1,
+        vector => match vector.as_bytes() {
+            [b'v', b'e', b'c', n @ b'2'..=b'4', b'd' | b'f' | b'i'] => usize::from(n - b'0'),
+            _ => 0,
+        },
+    }
 }
 
 pub(crate) fn read(source: Source<'_>) -> Result<MeshData, ReadError> {
@@ -84,6 +106,7 @@ pub(crate) fn read(source: Source<'_>) -> Result<MeshData, ReadError> {
         cells.push(cell);
     }
     let properties = read_properties(&mut s, &mut out, n_points, faces.len(), cells.len())?;
+    let mut face_slots = vec![Slot::Elsewhere; faces.len()];
     for (f, face) in faces.iter().enumerate() {
         let listed = match &properties.face_marks {
             Some(marks) => marks[f] != 0,
@@ -95,14 +118,29 @@ pub(crate) fn read(source: Source<'_>) -> Result<MeshData, ReadError> {
             if properties.face_marks.is_none() && cells_of_face[f].0 == 1 && cells_of_face[f].1.is_multiple_of(2) {
                 face[1..].reverse();
             }
-            out.face(&face, properties.face_tags.as_ref().map_or(0, |t| t[f]));
+            face_slots[f] = out.face(&face, properties.face_tags.as_ref().map_or(0, |t| t[f]));
         }
     }
+    let mut cell_slots = Vec::with_capacity(cells.len());
     for (c, cell) in cells.iter().enumerate() {
         let tag = properties.cell_tags.as_ref().map_or(0, |t| t[c]);
         let corner = properties.corners.as_ref().and_then(|t| u32::try_from(t[c]).ok());
-        add_cell(&s, &mut out, &faces, cell, corner, tag, c)?;
+        cell_slots.push(add_cell(&s, &mut out, &faces, cell, corner, tag, c)?);
     }
+    // The faces that only cells have carry no data of their own.
+    let listed: Vec<usize> = (0..faces.len()).filter(|&f| face_slots[f] != Slot::Elsewhere).collect();
+    for (on, name, components, values) in properties.arrays {
+        match on {
+            On::Points => out.point_array(&name, components, &Values::Real(values)),
+            On::Faces => {
+                let slots: Vec<Slot> = listed.iter().map(|&f| face_slots[f]).collect();
+                let values = listed.iter().flat_map(|f| &values[f * components..][..components]).copied().collect();
+                out.cell_array(&name, components, &Values::Real(values), &slots);
+            }
+            On::Cells => out.cell_array(&name, components, &Values::Real(values), &cell_slots),
+        }
+    }
+    out.name_tags(s.take_tag_names().into_iter());
     if let Some(tags) = properties.point_tags {
         out.point_tags = tags;
     }
@@ -182,10 +220,25 @@ fn read_properties(
             ("fprop", FACE_MARK) => (&mut properties.face_marks, n_faces),
             ("cprop", CORNER_MARK) => (&mut properties.corners, n_cells),
             _ => {
-                // How many lines a foreign property has depends on its type: everything but headers is skipped.
-                if kind.ends_with("prop") {
+                let (on, n) = match kind.as_str() {
+                    "vprop" => (On::Points, n_points),
+                    "fprop" => (On::Faces, n_faces),
+                    "cprop" => (On::Cells, n_cells),
+                    // How many lines another property has is not known: everything but headers is skipped.
+                    _ => {
+                        if kind.ends_with("prop") {
+                            out.ignore("properties");
+                        }
+                        continue;
+                    }
+                };
+                let components = components_of(&scalar);
+                if components == 0 || name.is_empty() {
                     out.ignore("properties");
+                    continue;
                 }
+                let values = read_values(s, n, components)?;
+                properties.arrays.push((on, name.to_owned(), components, values));
                 continue;
             }
         };
@@ -204,6 +257,19 @@ fn read_properties(
     Ok(properties)
 }
 
+/// The values of a property, one element a line.
+fn read_values(s: &mut Source<'_>, n: usize, components: usize) -> Result<Vec<f64>, ReadError> {
+    let mut values = Vec::with_capacity(reserve((n * components) as u64));
+    for i in 0..n {
+        line(s, n as u64, "values of the property", i as u64)?;
+        for _ in 0..components {
+            let span = s.need_word("a value")?;
+            values.push(s.number(span, "a value")?);
+        }
+    }
+    Ok(values)
+}
+
 /// Finds out what a cell is from its half-faces.
 fn add_cell(
     s: &Source<'_>,
@@ -213,7 +279,7 @@ fn add_cell(
     corner: Option<u32>,
     tag: i64,
     c: usize,
-) -> Result<(), ReadError> {
+) -> Result<Slot, ReadError> {
     let cycles: Vec<Vec<u32>> = cell
         .iter()
         .map(|&half_face| {
@@ -228,7 +294,7 @@ fn add_cell(
     let quads = cycles.iter().filter(|c| c.len() == 4).count();
     if triangles + quads != cycles.len() {
         out.ignore("polyhedra that are no hexes");
-        return Ok(());
+        return Ok(Slot::Elsewhere);
     }
     // The bottom: the triangle of a tet or wedge, the quad of a pyramid or hex.
     let (bottom, n_nodes) = match (triangles, quads) {
@@ -238,7 +304,7 @@ fn add_cell(
         (2, 3) => (cycles.iter().position(|c| c.len() == 3).unwrap_or(0), 6),
         _ => {
             out.ignore("polyhedra that are no hexes");
-            return Ok(());
+            return Ok(Slot::Elsewhere);
         }
     };
     let nodes = corners(&cycles, bottom, n_nodes).ok_or_else(|| {
@@ -250,11 +316,10 @@ fn add_cell(
             hex[..4].rotate_left(turns);
             hex[4..].rotate_left(turns);
         }
-        out.hex(hex, tag);
-    } else {
-        out.small_cell(&nodes, tag);
+        return Ok(out.hex(hex, tag));
     }
-    Ok(())
+    out.small_cell(&nodes, tag);
+    Ok(Slot::Elsewhere)
 }
 
 /// Nodes of a cell: the bottom cycle (seen from inside), then the vertex above each, then nothing else may be left.
@@ -377,7 +442,11 @@ pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
     for pyramid in &data.pyramids {
         add(pyramid, &[&[0, 1, 2, 3], &[1, 0, 4], &[2, 1, 4], &[3, 2, 4], &[0, 3, 4]]);
     }
-    writeln!(out, "OVM ASCII\nVertices\n{}", data.points.len())?;
+    writeln!(out, "OVM ASCII")?;
+    for name in &data.tag_names {
+        writeln!(out, "#{}", name.line())?;
+    }
+    writeln!(out, "Vertices\n{}", data.points.len())?;
     for point in &data.points {
         write_point(out, point, " ")?;
         out.write_all(b"\n")?;
@@ -408,6 +477,36 @@ pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
         property(out, "FProp", "tag", &face_tags.collect::<Vec<_>>())?;
         let hex_tags = (0..data.hexes.len()).map(|h| data.hex_tag(h)).chain(std::iter::repeat_n(0, n_small));
         property(out, "CProp", "tag", &hex_tags.collect::<Vec<_>>())?;
+    }
+    write_data(out, data, n_other, n_small)
+}
+
+/// The data as properties, component by component; `n_other` faces and `n_small` cells at the end have none.
+fn write_data(out: &mut dyn Write, data: &MeshData, n_other: usize, n_small: usize) -> io::Result<()> {
+    for (name, values) in &data.point_data {
+        reals(out, "VProp", name, values.iter().copied())?;
+    }
+    let none = |n| std::iter::repeat_n(f64::NAN, n);
+    for (name, columns) in arrays::on_cells(data) {
+        let several = columns.len() > 1;
+        for (k, column) in columns.into_iter().enumerate() {
+            let name = if several { component(name, k) } else { name.to_owned() };
+            let (on_quads, on_hexes) = column.on();
+            if on_quads {
+                reals(out, "FProp", &name, column.faces().chain(none(n_other)))?;
+            }
+            if on_hexes {
+                reals(out, "CProp", &name, column.hexes().chain(none(n_small)))?;
+            }
+        }
+    }
+    Ok(())
+}
+
+fn reals(out: &mut dyn Write, kind: &str, name: &str, values: impl Iterator<Item = f64>) -> io::Result<()> {
+    writeln!(out, "{kind} double \"{}\"", unquoted(name))?;
+    for value in values {
+        writeln!(out, "{}", Real(value))?;
     }
     Ok(())
 }
