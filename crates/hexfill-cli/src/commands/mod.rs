@@ -9,6 +9,5 @@ pub mod embed;
 pub mod enumerate;
 pub mod fill;
 pub mod info;
-mod limits;
 pub mod simplify;
 pub mod view;
