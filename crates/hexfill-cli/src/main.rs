@@ -67,6 +67,8 @@ enum Command {
     Fill(commands::fill::FillArgs),
     /// Judge a mesh: which level of the validity ladder it reaches, which rule fails where.
     Check(commands::check::CheckArgs),
+    /// Say everything that is wrong with a surface before it is filled, and mend it
+    Doctor(commands::doctor::DoctorArgs),
     /// Say what a surface or mesh is: genus, chords, key, signature, whether a hex mesh exists.
     #[command(visible_alias = "dual")]
     Info(commands::info::InfoArgs),
@@ -131,6 +133,7 @@ fn run() -> ExitCode {
     let outcome = match &cli.command {
         Command::Fill(args) => commands::fill::run(args, &console, &ctx),
         Command::Check(args) => commands::check::run(args, &console, &ctx),
+        Command::Doctor(args) => commands::doctor::run(args, &console),
         Command::Info(args) => commands::info::run(args, &console),
         Command::Embed(args) => commands::embed::run(args, &console, &ctx),
         Command::Simplify(args) => commands::simplify::run(args, &console, &ctx),
