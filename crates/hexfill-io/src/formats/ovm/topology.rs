@@ -1,12 +1,10 @@
 //! Edges and faces of a mesh to write, each found again by its vertices.
 //!
 //! A facet of a cell has three or four sides, so a face is kept as four half-edges and known by four vertices, sorted as far as
-//! its cycle allows. Two tables of numbers find edges and faces again; keys are not kept.
+//! its cycle allows. Edges and faces hang in a chain at their smallest vertex: chains are short in a mesh, and what is near in the
+//! mesh is near in memory.
 
-use rustc_hash::FxHasher;
-use std::hash::Hasher;
-
-/// Fills the fourth place of a triangle, and all places of a face with more than four sides.
+/// Fills the fourth place of a triangle.
 const NONE: u32 = u32::MAX;
 
 /// Edges and faces in the order of their first use, fewer than 2^31 of each.
@@ -14,46 +12,41 @@ const NONE: u32 = u32::MAX;
 pub(super) struct Topology {
     /// The ends of each edge as it was first used.
     pub(super) edges: Vec<[u32; 2]>,
-    edge_table: Table,
+    edges_at: Chains,
     /// The half-edges of each face of three or four sides.
     faces: Vec<[u32; 4]>,
-    face_table: Table,
+    faces_at: Chains,
 }
 
 impl Topology {
     /// The half-edge from one vertex to another: twice the edge's number, one more against it.
     pub(super) fn half_edge(&mut self, from: u32, to: u32) -> u32 {
-        let key = |[a, b]: [u32; 2]| u128::from(a.min(b)) << 32 | u128::from(a.max(b));
-        let fresh = self.edges.len() as u32;
-        let edges = &mut self.edges;
-        let edge = self.edge_table.find_or_insert(key([from, to]), fresh, |e| key(edges[e as usize]));
-        if edge == fresh {
-            edges.push([from, to]);
-        }
-        2 * edge + u32::from(edges[edge as usize][0] != from)
+        let smallest = from.min(to);
+        let edges = &self.edges;
+        let same = |e: u32| edges[e as usize] == [from, to] || edges[e as usize] == [to, from];
+        let edge = self.edges_at.find(smallest, same).unwrap_or_else(|| {
+            self.edges.push([from, to]);
+            self.edges_at.push(Some(smallest))
+        });
+        2 * edge + u32::from(self.edges[edge as usize][0] != from)
     }
 
     /// One more face; facets with its vertices are its half-faces unless there was such a face before.
     pub(super) fn add_face(&mut self, cycle: &[u32]) {
-        let fresh = self.faces.len() as u32;
-        if cycle.len() > 4 {
-            // No facet is like it.
-            (0..cycle.len()).for_each(|k| _ = self.half_edge(cycle[k], cycle[(k + 1) % cycle.len()]));
-            return self.faces.push([NONE; 4]);
-        }
-        let (wanted, _) = unturned(packed(cycle));
-        self.find_or_insert(wanted, fresh);
+        // No facet has other numbers of sides.
+        let name = matches!(cycle.len(), 3 | 4).then(|| unturned(packed(cycle)).0);
+        let hangs = name.filter(|&name| self.find(name).is_none());
         self.push(cycle);
+        self.faces_at.push(hangs.map(|name| name[0]));
     }
 
     /// The half-face of a facet of three or four sides, a new face if need be: twice the face's number, one more for its reverse.
     pub(super) fn half_face(&mut self, cycle: &[u32]) -> u32 {
-        let (wanted, turned) = unturned(packed(cycle));
-        let fresh = self.faces.len() as u32;
-        let face = self.find_or_insert(wanted, fresh);
-        if face == fresh {
+        let (name, turned) = unturned(packed(cycle));
+        let face = self.find(name).unwrap_or_else(|| {
             self.push(cycle);
-        }
+            self.faces_at.push(Some(name[0]))
+        });
         2 * face + u32::from(unturned(vertices(&self.edges, self.faces[face as usize])).1 != turned)
     }
 
@@ -68,15 +61,17 @@ impl Topology {
         &sides[..if sides[3] == NONE { 3 } else { 4 }]
     }
 
-    fn find_or_insert(&mut self, wanted: u128, fresh: u32) -> u32 {
-        let (edges, faces) = (&self.edges, &self.faces);
-        self.face_table.find_or_insert(wanted, fresh, |f| unturned(vertices(edges, faces[f as usize])).0)
+    fn find(&self, name: [u32; 4]) -> Option<u32> {
+        self.faces_at.find(name[0], |f| unturned(vertices(&self.edges, self.faces[f as usize])).0 == name)
     }
 
     fn push(&mut self, cycle: &[u32]) {
         let mut face = [NONE; 4];
-        for (k, slot) in face.iter_mut().enumerate().take(cycle.len()) {
-            *slot = self.half_edge(cycle[k], cycle[(k + 1) % cycle.len()]);
+        for k in 0..cycle.len() {
+            let side = self.half_edge(cycle[k], cycle[(k + 1) % cycle.len()]);
+            if let Some(slot) = face.get_mut(k) {
+                *slot = side;
+            }
         }
         self.faces.push(face);
     }
@@ -95,63 +90,51 @@ fn packed(cycle: &[u32]) -> [u32; 4] {
     }
 }
 
-/// The same name for a cycle, its rotations and its reverse: smallest vertex first, then the smaller of its neighbours, 32 bits each; and
+/// The same name for a cycle, its rotations and its reverse: smallest vertex first, then the smaller of its neighbours; and
 /// whether that is against the cycle.
-fn unturned(cycle: [u32; 4]) -> (u128, bool) {
+fn unturned(cycle: [u32; 4]) -> ([u32; 4], bool) {
     let n = if cycle[3] == NONE { 3 } else { 4 };
     let first = (0..n).min_by_key(|&k| cycle[k]).unwrap_or(0);
     let at = |k: usize| cycle[(first + k) % n];
     let turned = at(1) > at(n - 1);
     let step = if turned { n - 1 } else { 1 };
-    // A triangle must not be named as the quad with vertex 0 before it.
-    let none = if n == 3 { u128::from(NONE) } else { 0 };
-    ((0..n).fold(none, |name, k| name << 32 | u128::from(at(k * step))), turned)
+    let mut name = [NONE; 4];
+    for (k, slot) in name.iter_mut().enumerate().take(n) {
+        *slot = at(k * step);
+    }
+    (name, turned)
 }
 
-/// A hash table of numbers with open addressing; who asks says which key a number stands for.
+/// Lists of numbers by vertex.
 #[derive(Default)]
-struct Table {
-    /// Numbers, or [`NONE`]; a power of two, at least half of them free.
-    slots: Vec<u32>,
-    len: usize,
+struct Chains {
+    /// Per vertex: the number that came last, or [`NONE`].
+    first: Vec<u32>,
+    /// Per number: the one before at the same vertex, or [`NONE`].
+    next: Vec<u32>,
 }
 
-impl Table {
-    /// The number whose key is `wanted`; if there is none, `fresh` is inserted and given.
-    fn find_or_insert(&mut self, wanted: u128, fresh: u32, key_of: impl Fn(u32) -> u128) -> u32 {
-        if 2 * (self.len + 1) > self.slots.len() {
-            self.grow(&key_of);
+impl Chains {
+    fn find(&self, vertex: u32, is_wanted: impl Fn(u32) -> bool) -> Option<u32> {
+        let mut at = self.first.get(vertex as usize).copied().unwrap_or(NONE);
+        while at != NONE && !is_wanted(at) {
+            at = self.next[at as usize];
         }
-        let mask = self.slots.len() - 1;
-        let mut at = hash(wanted) & mask;
-        while self.slots[at] != NONE {
-            if key_of(self.slots[at]) == wanted {
-                return self.slots[at];
-            }
-            at = (at + 1) & mask;
-        }
-        self.slots[at] = fresh;
-        self.len += 1;
-        fresh
+        (at != NONE).then_some(at)
     }
 
-    fn grow(&mut self, key_of: impl Fn(u32) -> u128) {
-        let larger = vec![NONE; (2 * self.slots.len()).max(16)];
-        let mask = larger.len() - 1;
-        for number in std::mem::replace(&mut self.slots, larger).into_iter().filter(|&n| n != NONE) {
-            let mut at = hash(key_of(number)) & mask;
-            while self.slots[at] != NONE {
-                at = (at + 1) & mask;
+    /// Hangs the next number at a vertex, if any, and gives it.
+    fn push(&mut self, vertex: Option<u32>) -> u32 {
+        let number = self.next.len() as u32;
+        self.next.push(NONE);
+        if let Some(vertex) = vertex.map(|v| v as usize) {
+            if vertex >= self.first.len() {
+                self.first.resize(vertex + 1, NONE);
             }
-            self.slots[at] = number;
+            self.next[number as usize] = std::mem::replace(&mut self.first[vertex], number);
         }
+        number
     }
-}
-
-fn hash(key: u128) -> usize {
-    let mut hasher = FxHasher::default();
-    hasher.write_u128(key);
-    hasher.finish() as usize
 }
 
 #[cfg(test)]
