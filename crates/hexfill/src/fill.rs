@@ -8,7 +8,7 @@ use crate::last_resort::{LastResort, leaving_time};
 use crate::problem::Problem;
 use crate::simplify::simplify_construction;
 use hexfill_check::{Judged, Level, judge};
-use hexfill_construct::CellChoice;
+use hexfill_construct::{CellChoice, ConstructOptions};
 use hexfill_io::MeshData;
 use hexfill_mesh::{
     Context, HexMesh, ImproperPair, Offenders, QuadSurface, StopReason, hex_signature, improper_pairs, sheets,
@@ -451,13 +451,13 @@ pub(crate) fn construct(
     let given = matches!(options.interior, InteriorFrom::Tets(_));
     let variants = if given || options.count == 1 { 1 } else { VARIANTS_PER_MESH * options.count as u64 };
     for variant in 0..variants {
-        let tets: Option<Box<dyn hexfill_construct::InteriorTets>> = match &options.interior {
+        let tets: Option<Arc<dyn hexfill_construct::InteriorTets>> = match &options.interior {
             InteriorFrom::BuiltIn => None,
-            InteriorFrom::Tets(tets) => Some(Box::new(hexfill_construct::GivenTets::clone(tets))),
-            InteriorFrom::Tetgen(program) => Some(Box::new(program.clone())),
+            InteriorFrom::Tets(tets) => Some(tets.clone()),
+            InteriorFrom::Tetgen(program) => Some(Arc::new(program.clone())),
         };
-        let how =
-            hexfill_construct::Options { tets, cells: options.cells, variant, ..hexfill_construct::Options::default() };
+        let cells = options.cells;
+        let how = ConstructOptions { tets, cells, variant, ..ConstructOptions::default() };
         let made = match hexfill_construct::construct(&problem.surface, points.as_deref(), &how, ctx) {
             Err(hexfill_construct::ConstructError::Stopped(reason)) => {
                 result.stop = reason;
