@@ -49,7 +49,6 @@ impl Values {
             Self::Real(v) => v[i],
         }
     }
-
 }
 
 /// Names under which tags are stored as a data array, our own first; the earlier one wins.
@@ -218,7 +217,9 @@ impl Assembly {
             to.iter_mut().enumerate().for_each(|(k, x)| *x = values.real(from + k));
         }
         if elsewhere > 0 {
-            self.note(format!("cell array `{name}`: values on {elsewhere} cells other than quads and hexes are not kept"));
+            self.note(format!(
+                "cell array `{name}`: values on {elsewhere} cells other than quads and hexes are not kept"
+            ));
         }
         // An array over hexes alone fills the quads with NaN, and the other way round.
         let filled = |v: &[f64]| v.iter().any(|x| !x.is_nan());
@@ -246,7 +247,8 @@ impl Assembly {
     /// An array of the file as a whole: names of tags if it is pairs of a tag and a dimension, otherwise passed over.
     pub(crate) fn field(&mut self, name: &str, components: usize, values: &Values) {
         let Values::Whole(values) = values else { return };
-        let named = |row: &[i64]| Some(TagName { on: TagOn::from_dimension(row[1])?, tag: row[0], name: name.to_owned() });
+        let named =
+            |row: &[i64]| Some(TagName { on: TagOn::from_dimension(row[1])?, tag: row[0], name: name.to_owned() });
         let pairs = components == 2 || (components == 1 && values.len() == 2);
         if pairs && values.len().is_multiple_of(2) {
             let names: Option<Vec<TagName>> = values.chunks_exact(2).map(named).collect();

@@ -59,11 +59,23 @@ fn kind_of(element_type: &str) -> Kind {
 enum Block {
     Nothing,
     Nodes,
-    Elements { kind: Kind, name: String, set: Option<u32> },
-    ElementSet { set: u32, generate: bool },
-    NodeSet { set: u32, generate: bool },
+    Elements {
+        kind: Kind,
+        name: String,
+        set: Option<u32>,
+    },
+    ElementSet {
+        set: u32,
+        generate: bool,
+    },
+    NodeSet {
+        set: u32,
+        generate: bool,
+    },
     /// Faces of elements; `None` is the surface of all quads.
-    Surface { set: Option<u32> },
+    Surface {
+        set: Option<u32>,
+    },
 }
 
 /// A line of a surface: faces of one element, or of those in a set.

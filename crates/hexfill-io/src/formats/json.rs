@@ -181,7 +181,9 @@ pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
         }
     }
     write_names(out, data)?;
-    for (name, arrays) in [("point_data", &data.point_data), ("quad_data", &data.quad_data), ("hex_data", &data.hex_data)] {
+    for (name, arrays) in
+        [("point_data", &data.point_data), ("quad_data", &data.quad_data), ("hex_data", &data.hex_data)]
+    {
         if arrays.is_empty() {
             continue;
         }

@@ -156,7 +156,8 @@ pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
     for (face, tag) in data.tagged_faces() {
         if has_cell_tags(data) && group != Some(tag) {
             let names = data.tag_names.iter().filter(|n| n.on == TagOn::Faces && n.tag == tag);
-            let words: Vec<String> = names.map(|n| n.name.replace(|c: char| c.is_whitespace() || c.is_control(), "_")).collect();
+            let words: Vec<String> =
+                names.map(|n| n.name.replace(|c: char| c.is_whitespace() || c.is_control(), "_")).collect();
             writeln!(out, "g {}", if words.is_empty() { name_of(tag) } else { words.join(" ") })?;
             group = Some(tag);
         }

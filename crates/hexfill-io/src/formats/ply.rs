@@ -145,7 +145,9 @@ fn read_header(s: &mut Source<'_>, out: &mut Assembly) -> Result<(Encoding, Vec<
             b"comment" => {
                 let text = String::from_utf8_lossy(s.rest()).into_owned();
                 out.name_tags(TagName::from_line(&text).into_iter());
-                if let Some((property, name)) = text.strip_prefix(NAME_COMMENT).and_then(|t| t.trim_start().split_once(' ')) {
+                if let Some((property, name)) =
+                    text.strip_prefix(NAME_COMMENT).and_then(|t| t.trim_start().split_once(' '))
+                {
                     names.insert(property.to_owned(), name.to_owned());
                 }
             }

@@ -512,7 +512,8 @@ impl Physical {
     /// otherwise its group has all the names. With `everywhere` what has no tag is in a group, too, where others have one:
     /// meshio reads no mesh whose elements are partly in groups.
     pub(crate) fn new(data: &MeshData, overlap: bool, everywhere: bool) -> Self {
-        let tags: std::collections::BTreeSet<(u8, i64)> = elements(data).map(|(t, _, tag)| (dimension(t), tag)).collect();
+        let tags: std::collections::BTreeSet<(u8, i64)> =
+            elements(data).map(|(t, _, tag)| (dimension(t), tag)).collect();
         let mut physical = Self { numbers: BTreeMap::new(), names: BTreeMap::new() };
         // The group of a name is the tag that has no other name.
         let mut group_of: BTreeMap<(u8, &str), i64> = BTreeMap::new();

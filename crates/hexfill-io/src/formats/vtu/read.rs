@@ -249,13 +249,11 @@ fn parse<'a>(file: &mut File<'_>, text: &'a str) -> Result<(Vec<Piece<'a>>, Vec<
             Event::End(e) => {
                 depth = depth.saturating_sub(1);
                 match e.name().as_ref() {
-                    "DataArray" => {
-                        match (array.take(), pieces.last_mut()) {
-                            (Some(done), _) if done.section == Section::FieldData => fields.push(done),
-                            (Some(done), Some(piece)) => piece.arrays.push(done),
-                            _ => {}
-                        }
-                    }
+                    "DataArray" => match (array.take(), pieces.last_mut()) {
+                        (Some(done), _) if done.section == Section::FieldData => fields.push(done),
+                        (Some(done), Some(piece)) => piece.arrays.push(done),
+                        _ => {}
+                    },
                     "Piece" => in_piece = false,
                     name if Section::from_name(name).is_some() => section = None,
                     _ => {}
