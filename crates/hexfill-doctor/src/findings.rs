@@ -333,7 +333,7 @@ impl Findings {
                 Severity::Poor,
                 &named(reflex),
                 |n| format!("{n} quad{} with a straight or reflex corner", s(n)),
-                "move a vertex: no hex on such a quad has det J > 0 everywhere",
+                "move a vertex: hexes on such quads are hardly ever valid",
             ),
         ];
         self.findings.extend(shapes.into_iter().flatten());

@@ -3,8 +3,9 @@
 use crate::describe::describe_surface;
 use crate::limits::LimitsInfo;
 use crate::problem::Problem;
-use hexfill_doctor::{Finding, Findings, MendOptions, Severity, Soup, examine, mend};
+use hexfill_doctor::{Finding, Findings, MendOptions, Severity, Soup, crossings, examine, mend};
 use hexfill_io::{MeshData, OtherFace};
+use hexfill_mesh::QuadId;
 use serde::Serialize;
 
 /// All that is known of a surface before it is filled.
@@ -55,6 +56,13 @@ pub fn doctor(name: &str, data: &MeshData) -> Diagnosis {
     }
     let can_be_filled = existence.is_some() && findings.worst() != Some(Severity::Fatal);
     Diagnosis { findings, notes, existence, limits, can_be_filled }
+}
+
+/// The pairs of quads that cross each other or touch where they should not, ascending: a mesh of the surface overlaps itself there. Empty without
+/// positions.
+pub fn crossing_quads(problem: &Problem) -> Vec<[QuadId; 2]> {
+    let pairs = crossings(&soup(&problem.data()), usize::MAX);
+    pairs.into_iter().map(|pair| pair.map(QuadId)).collect()
 }
 
 /// What may be changed.

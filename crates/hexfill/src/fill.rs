@@ -9,7 +9,7 @@ use crate::problem::Problem;
 use crate::simplify::simplify_construction;
 use hexfill_check::{Judged, Level, judge};
 use hexfill_construct::{CellChoice, ConstructOptions};
-use hexfill_io::MeshData;
+use hexfill_io::{MeshData, TagName, TagOn};
 use hexfill_mesh::{
     Context, HexMesh, ImproperPair, Offenders, QuadSurface, StopReason, hex_signature, improper_pairs, sheets,
 };
@@ -576,6 +576,14 @@ pub fn mesh_data(problem: &Problem, mesh: &HexMesh, points: Option<Vec<[f64; 3]>
     data.points = points.unwrap_or_default();
     if let Some(tags) = &mut data.point_tags {
         tags.resize(mesh.n_vertices(), 0);
+    }
+    for (_, values) in &mut data.point_data {
+        values.resize(mesh.n_vertices(), f64::NAN);
+    }
+    if data.quad_tags.is_some() {
+        // Programs that work with groups want one for the cells, too.
+        data.hex_tags = Some(vec![1; data.hexes.len()]);
+        data.tag_names.push(TagName { on: TagOn::Cells, tag: 1, name: "volume".to_owned() });
     }
     data
 }

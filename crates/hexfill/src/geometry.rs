@@ -293,13 +293,14 @@ impl Placed {
         self.cells.iter().map(|c| if c.valid { c.certified_lower } else { c.corner_scaled_jacobian.min(0.0) }).collect()
     }
 
-    /// Adds two numbers per hex to file data: whether it is certified (1 or 0), and its scaled Jacobian. What the file said of these
-    /// before is gone.
+    /// Gives file data two numbers per hex: whether it is certified (1 or 0), and its scaled Jacobian. Those of an earlier
+    /// judgement are replaced.
     pub fn flag(&self, data: &mut MeshData) {
-        data.hex_data.retain(|(name, _)| name != "certified_positive" && name != "scaled_jacobian");
         let certified = self.cells.iter().map(|c| f64::from(u8::from(c.valid))).collect();
-        data.hex_data.push(("certified_positive".to_owned(), certified));
-        data.hex_data.push(("scaled_jacobian".to_owned(), self.scaled_jacobians()));
+        for (name, values) in [("certified_positive", certified), ("scaled_jacobian", self.scaled_jacobians())] {
+            data.hex_data.retain(|(n, _)| n != name);
+            data.hex_data.push((name.to_owned(), values));
+        }
     }
 }
 

@@ -32,7 +32,7 @@ mod threads;
 
 pub use choose::Prefer;
 pub use describe::{ChordInfo, MeshInfo, PartInfo, SheetInfo, SurfaceInfo, describe_mesh, describe_surface};
-pub use doctor::{Cure, CureOptions, Diagnosis, cure, doctor};
+pub use doctor::{Cure, CureOptions, Diagnosis, crossing_quads, cure, doctor};
 pub use effort::Effort;
 pub use fill::{
     FillError, FillOptions, FillReport, FillResult, Filled, InteriorFrom, Route, Strategy, check_fillable, fill,

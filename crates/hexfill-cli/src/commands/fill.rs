@@ -170,7 +170,8 @@ struct Output {
 pub fn run(args: &FillArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
     let start = Instant::now();
     check_files(args, console)?;
-    let problem = files::load_problem(&args.surface, args.from)?;
+    let mut problem = files::load_problem(&args.surface, args.from)?;
+    problem.notes.extend(crossing_note(&problem));
     for note in &problem.notes {
         console.note(note);
     }
@@ -228,6 +229,20 @@ pub fn run(args: &FillArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Res
         say(&output, args, console);
     }
     Ok(exit)
+}
+
+/// A word on quads that cross: work on them is in vain.
+fn crossing_note(problem: &Problem) -> Option<String> {
+    let pairs = hexfill::crossing_quads(problem);
+    let first: Vec<String> = pairs.iter().take(3).map(|[a, b]| format!("{a} and {b}")).collect();
+    let more = if pairs.len() > 3 { ", ..." } else { "" };
+    (!pairs.is_empty()).then(|| {
+        format!(
+            "{} pairs of quads cross or touch ({}{more}): a mesh of this surface overlaps itself; see `hexfill doctor`",
+            pairs.len(),
+            first.join(", ")
+        )
+    })
 }
 
 /// Refuses files that cannot be written, or would be written twice, before any work is done.
