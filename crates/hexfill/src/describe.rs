@@ -5,7 +5,7 @@ use crate::limits::{self, LimitsInfo};
 use hexfill_construct::{Existence, existence};
 use hexfill_io::MeshData;
 use hexfill_mesh::{
-    HexMesh, HexMeshError, QuadSurface, VertexId, bipartition, chords, hex_signature, improper_pairs, key, sheets,
+    HexMeshError, QuadSurface, VertexId, bipartition, chords, hex_signature, improper_pairs, key, sheets,
     surface_automorphisms, surface_signature,
 };
 use serde::Serialize;
@@ -192,8 +192,7 @@ pub fn describe_surface(surface: &QuadSurface, points: Option<&[[f64; 3]]>) -> S
 /// # Errors
 /// [`HexMeshError`] if they do not glue.
 pub fn describe_mesh(data: &MeshData) -> Result<MeshInfo, HexMeshError> {
-    let highest = data.hexes.iter().flatten().max().map_or(0, |&v| v as usize + 1);
-    let mesh = HexMesh::try_new(data.points.len().max(highest), &data.hexes)?;
+    let mesh = data.hex_mesh()?;
     let quads: Vec<[u32; 4]> = mesh.boundary_quads().iter().map(|q| q.map(|v| v.0)).collect();
     let boundary = QuadSurface::try_new(mesh.n_vertices(), &quads).ok();
     Ok(MeshInfo {
