@@ -64,6 +64,9 @@ fn duration(seconds: f64) -> String {
     }
 }
 
+/// Raised when a key of a JSON report goes or changes its meaning; new keys leave it as it is.
+const JSON_VERSION: u32 = 1;
+
 /// Time between two plain progress lines.
 const LINE_EVERY: Duration = Duration::from_secs(5);
 
@@ -125,12 +128,16 @@ impl Console {
         Ok(())
     }
 
-    /// Prints a value as JSON on stdout.
+    /// Prints a value as JSON on stdout; an object begins with the version of its keys.
     ///
     /// # Errors
     /// If stdout cannot be written.
     pub fn print_json(&self, value: &impl serde::Serialize) -> anyhow::Result<()> {
-        self.print(serde_json::to_string_pretty(value)?)
+        let mut value = serde_json::to_value(value)?;
+        if let Some(object) = value.as_object_mut() {
+            object.shift_insert(0, "json_version".to_owned(), JSON_VERSION.into());
+        }
+        self.print(serde_json::to_string_pretty(&value)?)
     }
 
     /// Shows progress of long work.
