@@ -6,7 +6,7 @@ use crate::exit::Exit;
 use crate::files;
 use anyhow::bail;
 use hexfill::construct::{Existence, existence};
-use hexfill::io::{Format, MeshData};
+use hexfill::io::MeshData;
 use hexfill::mesh::{
     HexMesh, QuadSurface, bipartition, chords, hex_signature, improper_pairs, key, sheets, surface_automorphisms,
     surface_signature,
@@ -22,9 +22,8 @@ use std::io::Write as _;
 pub struct InfoArgs {
     /// A surface or a mesh: a file, `-`, a catalogue name or a signature.
     input: String,
-    /// Format of the input.
-    #[arg(long, value_name = "FORMAT", value_parser = files::parse_format)]
-    from: Option<Format>,
+    #[command(flatten)]
+    reading: files::InputArgs,
     /// Where an odd cycle bounds inside, so that no hex mesh exists: write its edges, as lines (.obj) or as vertex pairs (.txt).
     #[arg(long, value_name = "FILE")]
     cycle: Option<String>,
@@ -104,9 +103,9 @@ pub fn run(args: &InfoArgs, console: &Console) -> anyhow::Result<Exit> {
         files::check_distinct(&[&args.input, file])?;
     }
     let problem = if hexfill::is_named(&args.input) {
-        files::load_problem(&args.input, None)?
+        files::load_problem(&args.input, &args.reading)?
     } else {
-        let data = files::read_data(&args.input, args.from)?;
+        let data = files::read_data(&args.input, &args.reading)?;
         if !data.hexes.is_empty() {
             if args.cycle.is_some() {
                 bail!("{}: --cycle is about surfaces; this is a hex mesh", args.input);
