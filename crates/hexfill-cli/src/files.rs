@@ -45,23 +45,78 @@ pub fn parse_format(text: &str) -> Result<Format, String> {
     Format::from_name(text).map_err(|e| e.to_string())
 }
 
-/// What a file or stdin holds.
-pub fn read_data(input: &str, from: Option<Format>) -> Result<MeshData> {
-    if input == "-" {
-        let Some(format) = from else { bail!("reading stdin: name its format with --from") };
-        return Ok(hexfill::io::read_from(std::io::stdin().lock(), format, "stdin")?);
+/// How input is read: flags of all commands that take surfaces.
+#[derive(clap::Args, Clone, Debug, Default)]
+pub struct InputArgs {
+    /// Format of the input.
+    #[arg(long, value_name = "FORMAT", value_parser = parse_format)]
+    pub from: Option<Format>,
+    /// Merge points of the input that are at most this far apart, in its unit; 0: points with the same coordinates. Closes the seams
+    /// that exporters leave.
+    #[arg(long, value_name = "TOL", value_parser = parse_tolerance)]
+    pub weld: Option<f64>,
+    /// Read cells of higher order (quad8, quad9, hex20, ...) as their corners; the points between these are dropped.
+    #[arg(long, visible_alias = "linearize")]
+    pub linearise: bool,
+}
+
+impl From<Option<Format>> for InputArgs {
+    fn from(from: Option<Format>) -> Self {
+        Self { from, ..Self::default() }
     }
-    check_input(input)?;
-    Ok(hexfill::io::read_path(Path::new(input), from)?)
+}
+
+/// `--weld`: a distance.
+fn parse_tolerance(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(x) if x.is_finite() && x >= 0.0 => Ok(x),
+        _ => Err(format!("`{text}` is no distance; write 0, 1e-6 or 0.01")),
+    }
+}
+
+/// What a file or stdin holds, with the flags applied.
+pub fn read_data(input: &str, how: &InputArgs) -> Result<MeshData> {
+    let mut data = if input == "-" {
+        let Some(format) = how.from else { bail!("reading stdin: name its format with --from") };
+        hexfill::io::read_from(std::io::stdin().lock(), format, "stdin")?
+    } else {
+        check_input(input)?;
+        hexfill::io::read_path(Path::new(input), how.from)?
+    };
+    if how.linearise {
+        data = data.linearised();
+    }
+    if !data.middles.is_empty() {
+        bail!(
+            "{input} has cells of higher order (quad8, quad9, hex20, ...), {} of its points lie between corners; add --linearise to read \
+             the corners alone (fill, convert, check, info), or export straight cells",
+            data.middles.len()
+        );
+    }
+    if let Some(tolerance) = how.weld {
+        let welded = hexfill::io::weld(&mut data, tolerance);
+        if welded.collapsed > 0 {
+            let n = welded.collapsed;
+            bail!(
+                "--weld {tolerance} merges corners of {n} faces or cells of {input} with each other; use a smaller tolerance"
+            );
+        }
+        data.notes.push(format!(
+            "--weld {tolerance}: {} points merged into others, {} are left",
+            welded.merged,
+            data.points.len()
+        ));
+    }
+    Ok(data)
 }
 
 /// The problem named by a file, stdin, a catalogue name or a signature.
-pub fn load_problem(input: &str, from: Option<Format>) -> Result<Problem> {
+pub fn load_problem(input: &str, how: &InputArgs) -> Result<Problem> {
     if hexfill::is_named(input) {
         return Ok(Problem::load(input, None)?);
     }
     let name = if input == "-" { "stdin" } else { input };
-    Ok(Problem::from_data(name, &read_data(input, from)?)?)
+    Ok(Problem::from_data(name, &read_data(input, how)?)?)
 }
 
 /// Writes to a path (format by extension unless given) or, for `-`, to stdout; notes what the format cannot hold.

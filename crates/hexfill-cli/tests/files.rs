@@ -109,3 +109,129 @@ fn formats_that_hold_no_hexes_are_refused_before_any_work() {
         }
     }
 }
+
+/// The faces of the box without points in common, the upper half off by `off`.
+fn loose(off: f64) -> String {
+    let mut text = String::new();
+    let whole: Vec<&str> = GROUPS.lines().filter(|l| l.starts_with("v ")).collect();
+    for face in GROUPS.lines().filter_map(|l| l.strip_prefix("f ")) {
+        for corner in face.split(' ') {
+            let mut point: Vec<f64> =
+                whole[corner.parse::<usize>().unwrap() - 1][2..].split(' ').map(|x| x.parse().unwrap()).collect();
+            point[0] += if face.split(' ').any(|c| c == "10") { off } else { 0.0 };
+            text += &format!("v {} {} {}\n", point[0], point[1], point[2]);
+        }
+        text += "f -4 -3 -2 -1\n";
+    }
+    text
+}
+
+#[test]
+fn seams_are_named_with_the_tolerance_that_closes_them() {
+    let dir = tempfile::tempdir().unwrap();
+    for (off, due) in [(0.0, "--weld 0)"), (1e-7, "--weld 0.0000001"), (0.03, "--weld 0.031)")] {
+        std::fs::write(dir.path().join("loose.obj"), loose(off)).unwrap();
+        let (code, _, err) = hexfill(dir.path(), &["fill", "loose.obj", "-o", "mesh.vtk"]);
+        assert_eq!(code, 2, "{err}");
+        assert!(err.contains("40 boundary edges") && err.contains(due), "{off}: {err}");
+        let said = err.split("(--weld ").nth(1).unwrap().split(')').next().unwrap();
+        done(dir.path(), &["fill", "loose.obj", "-o", "mesh.vtk", "--weld", said]);
+        done(dir.path(), &["convert", "loose.obj", "-o", "closed.obj", "--weld", said]);
+        done(dir.path(), &["check", "mesh.vtk", "--surface", "closed.obj"]);
+        let (code, _, err) = hexfill(dir.path(), &["info", "loose.obj", "--weld", said]);
+        assert_eq!(code, 0, "{err}");
+        assert!(err.contains("28 points merged into others, 12 are left"), "{err}");
+    }
+    let (code, _, err) = hexfill(dir.path(), &["fill", "loose.obj", "-o", "mesh.vtk", "--weld", "1.1"]);
+    assert_eq!(code, 2);
+    assert!(err.contains("smaller tolerance"), "{err}");
+}
+
+/// The box with a point in the middle of each edge of each quad.
+fn quad8() -> (Vec<[f64; 3]>, Vec<[usize; 8]>) {
+    let numbers = |l: &str| -> Vec<f64> { l.split(' ').map(|x| x.parse().unwrap()).collect() };
+    let lines = |key: &'static str| GROUPS.lines().filter_map(move |l| l.strip_prefix(key));
+    let mut points: Vec<[f64; 3]> = lines("v ").map(|l| numbers(l).try_into().unwrap()).collect();
+    let mut between = std::collections::BTreeMap::new();
+    let quads = lines("f ")
+        .map(|l| {
+            let corners: Vec<usize> = numbers(l).iter().map(|x| *x as usize - 1).collect();
+            let mut quad = [0; 8];
+            for k in 0..4 {
+                let (a, b) = (corners[k], corners[(k + 1) % 4]);
+                quad[k] = a;
+                quad[k + 4] = *between.entry((a.min(b), a.max(b))).or_insert_with(|| {
+                    points.push([0, 1, 2].map(|i| 0.5 * (points[a][i] + points[b][i])));
+                    points.len() - 1
+                });
+            }
+            quad
+        })
+        .collect();
+    (points, quads)
+}
+
+#[test]
+fn quadratic_surfaces_are_refused_with_a_remedy_and_read_as_their_corners() {
+    let dir = tempfile::tempdir().unwrap();
+    let (points, quads) = quad8();
+    let rows = |separator: &str, base: usize, prefix: &dyn Fn(usize) -> String| -> String {
+        let row = |(i, quad): (usize, &[usize; 8])| {
+            let words: Vec<String> = quad.iter().map(|v| (v + base).to_string()).collect();
+            format!("{}{}\n", prefix(i), words.join(separator))
+        };
+        quads.iter().enumerate().map(row).collect()
+    };
+    let at = |separator: &str, prefix: &dyn Fn(usize) -> String| -> String {
+        let row = |(i, p): (usize, &[f64; 3])| format!("{}{}{separator}{}{separator}{}\n", prefix(i), p[0], p[1], p[2]);
+        points.iter().enumerate().map(row).collect()
+    };
+    let (n, m) = (points.len(), quads.len());
+    let none = |_: usize| String::new();
+    let vtk = format!(
+        "# vtk DataFile Version 3.0\nquad8\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS {n} double\n{}CELLS {m} {}\n{}CELL_TYPES {m}\n{}",
+        at(" ", &none),
+        9 * m,
+        rows(" ", 0, &|_| "8 ".to_owned()),
+        "23\n".repeat(m)
+    );
+    let msh = format!(
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{n}\n{}$EndNodes\n$Elements\n{m}\n{}$EndElements\n",
+        at(" ", &|i| format!("{} ", i + 1)),
+        rows(" ", 1, &|i| format!("{} 16 2 0 1 ", i + 1))
+    );
+    let inp = format!(
+        "*NODE\n{}*ELEMENT, TYPE=S8R\n{}",
+        at(", ", &|i| format!("{}, ", i + 1)),
+        rows(", ", 1, &|i| format!("{}, ", i + 1))
+    );
+    for (name, text) in [("q.vtk", vtk), ("q.msh", msh), ("q.inp", inp)] {
+        std::fs::write(dir.path().join(name), text).unwrap();
+        for command in
+            [&["fill", name, "-o", "mesh.vtk"][..], &["info", name], &["convert", name, "-o", "straight.obj"]]
+        {
+            let (code, _, err) = hexfill(dir.path(), command);
+            assert_eq!(code, 2, "{command:?}: {err}");
+            assert!(err.contains("--linearise") && err.contains("20 of its points"), "{command:?}: {err}");
+            done(dir.path(), &[command, &["--linearise"]].concat());
+        }
+        done(dir.path(), &["check", "mesh.vtk", "--surface", name, "--linearise"]);
+        assert_eq!(read_path(&dir.path().join("straight.obj"), None).unwrap().points, points[..12]);
+    }
+}
+
+#[test]
+fn files_that_cannot_be_filled_say_what_they_are_and_what_to_do() {
+    let dir = tempfile::tempdir().unwrap();
+    for (name, parts) in [
+        ("part.stl", ["triangles", "RecombineAll"]),
+        ("part.step", ["CAD", ".msh"]),
+        ("part.cgns", ["meshio", ".vtu"]),
+        ("part.meshb", ["binary", ".mesh"]),
+    ] {
+        std::fs::write(dir.path().join(name), "solid part\n").unwrap();
+        let (code, _, err) = hexfill(dir.path(), &["fill", name, "-o", "mesh.vtk"]);
+        assert_eq!(code, 2);
+        assert!(parts.iter().all(|p| err.contains(p)), "{err}");
+    }
+}

@@ -121,6 +121,13 @@ impl Assembly {
         true
     }
 
+    /// The corners of a cell, of which there are `corners`; the other nodes of one of higher order lie between them.
+    pub(crate) fn corners<'n>(&mut self, nodes: &'n [u32], corners: usize) -> &'n [u32] {
+        let (corners, middles) = nodes.split_at(corners.min(nodes.len()));
+        self.mesh.middles.extend_from_slice(middles);
+        corners
+    }
+
     /// Counts something that is passed over.
     pub(crate) fn ignore(&mut self, what: &str) {
         self.ignore_many(what, 1);
@@ -259,6 +266,7 @@ impl Assembly {
     /// Faces and cells have the tags of their combinations of groups, with the names of those.
     pub(crate) fn tag_by_groups(&mut self, slots: &[Slot], combinations: &[Combination], groups: &Groups) {
         let placed = || slots.iter().copied().zip(combinations.iter().copied()).filter(|(s, _)| *s != Slot::Elsewhere);
+        self.mesh.notes.extend(groups.note());
         let tags = groups.tags(placed().map(|(_, c)| c));
         let mut on = [FxHashSet::default(), FxHashSet::default()];
         for (slot, combination) in placed().filter(|(_, c)| *c != NONE) {
@@ -270,9 +278,26 @@ impl Assembly {
         }
     }
 
+    /// A point is in the middle only if it is a corner of nothing.
+    fn sort_middles(&mut self) {
+        let mesh = &mut self.mesh;
+        if mesh.middles.is_empty() {
+            return;
+        }
+        let mut corner = vec![false; mesh.points.len()];
+        let faces = mesh.quads.iter().flatten().chain(mesh.other_faces.iter().flat_map(|f| &f.vertices));
+        let cells = mesh.hexes.iter().flatten().chain(mesh.tets.iter().flatten());
+        let rest = mesh.wedges.iter().flatten().chain(mesh.pyramids.iter().flatten());
+        faces.chain(cells).chain(rest).for_each(|&v| corner[v as usize] = true);
+        mesh.middles.retain(|&v| !corner[v as usize]);
+        mesh.middles.sort_unstable();
+        mesh.middles.dedup();
+    }
+
     /// The finished mesh.
     pub(crate) fn finish(mut self) -> MeshData {
         let some = |tags: Vec<i64>, n: usize| (tags.len() == n && tags.iter().any(|&t| t != 0)).then_some(tags);
+        self.sort_middles();
         self.mesh.tag_names.retain(|n| n.tag != 0);
         self.mesh.tag_names.sort_by_key(|n| (n.on, n.tag));
         self.mesh.tag_names.dedup();

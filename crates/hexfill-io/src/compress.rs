@@ -1,12 +1,15 @@
 //! gzip and Zstandard, recognised by their first bytes on reading and by the extension on writing.
 
 use crate::format::Compression;
+use crate::limits;
 use flate2::read::MultiGzDecoder;
 use flate2::write::GzEncoder;
 use ruzstd::decoding::errors::{FrameDecoderError, ReadFrameHeaderError};
 use ruzstd::decoding::{BlockDecodingStrategy, FrameDecoder};
 use ruzstd::encoding::{CompressionLevel, compress_to_vec};
+use std::cell::Cell;
 use std::io::{self, BufRead, BufReader, Cursor, Read, Write};
+use std::rc::Rc;
 
 const BUFFER: usize = 1 << 18;
 
@@ -19,13 +22,48 @@ pub(crate) fn unpacked<'r>(mut reader: impl Read + 'r) -> io::Result<(Box<dyn Bu
         [0x28, 0xb5, 0x2f, 0xfd] | [0x50..=0x5f, 0x2a, 0x4d, 0x18] => Some(Compression::Zstd),
         _ => None,
     };
-    let whole = BufReader::with_capacity(BUFFER, Cursor::new(head).chain(reader));
+    let packed = Rc::new(Cell::new(0));
+    let counted = Counted { source: Cursor::new(head).chain(reader), count: Rc::clone(&packed) };
+    let whole = BufReader::with_capacity(BUFFER, counted);
+    let limited = |unpacker: Box<dyn Read + 'r>| -> Box<dyn BufRead + 'r> {
+        Box::new(BufReader::with_capacity(BUFFER, Limited { unpacker, packed, unpacked: 0 }))
+    };
     let unpacked: Box<dyn BufRead + 'r> = match compression {
         None => Box::new(whole),
-        Some(Compression::Gzip) => Box::new(BufReader::with_capacity(BUFFER, MultiGzDecoder::new(whole))),
-        Some(Compression::Zstd) => Box::new(BufReader::with_capacity(BUFFER, ZstdReader::new(whole))),
+        Some(Compression::Gzip) => limited(Box::new(MultiGzDecoder::new(whole))),
+        Some(Compression::Zstd) => limited(Box::new(ZstdReader::new(whole))),
     };
     Ok((unpacked, compression))
+}
+
+/// Counts the bytes that are read.
+struct Counted<R> {
+    source: R,
+    count: Rc<Cell<u64>>,
+}
+
+impl<R: Read> Read for Counted<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let n = self.source.read(buffer)?;
+        self.count.set(self.count.get() + n as u64);
+        Ok(n)
+    }
+}
+
+/// Stops an unpacker that makes too much of its bytes.
+struct Limited<'r> {
+    unpacker: Box<dyn Read + 'r>,
+    packed: Rc<Cell<u64>>,
+    unpacked: u64,
+}
+
+impl Read for Limited<'_> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let n = self.unpacker.read(buffer)?;
+        self.unpacked += n as u64;
+        let packed = self.packed.get();
+        if self.unpacked > limits::unpacked(packed) { Err(limits::bomb(packed)) } else { Ok(n) }
+    }
 }
 
 /// All frames of a Zstandard stream, one after the other, checksums verified.
@@ -225,6 +263,21 @@ mod tests {
             let middle = flipped.len() / 2;
             flipped[middle] ^= 0x55;
             assert!(unpack(&flipped).is_err(), "{compression:?}");
+        }
+    }
+
+    #[test]
+    fn bombs_are_stopped_at_the_limit() {
+        // Zeros, packed by the thousand: 300 MiB of them.
+        let mut gzip = Packer::new(Vec::new(), Some(Compression::Gzip));
+        let zeros = vec![0; 1 << 20];
+        (0..300).for_each(|_| gzip.write_all(&zeros).unwrap());
+        let mut zstd = Packer::new(Vec::new(), Some(Compression::Zstd));
+        (0..300).for_each(|_| zstd.write_all(&zeros).unwrap());
+        for bomb in [gzip.finish().unwrap(), zstd.finish().unwrap()] {
+            let (mut reader, _) = unpacked(bomb.as_slice()).unwrap();
+            let error = io::copy(&mut reader, &mut io::sink()).unwrap_err().to_string();
+            assert!(error.contains("the limit (256 MiB"), "{error}");
         }
     }
 

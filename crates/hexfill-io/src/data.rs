@@ -7,6 +7,7 @@
 use crate::error::WriteError;
 use crate::format::Format;
 use hexfill_mesh::{HexMesh, HexMeshError, QuadSurface, SurfaceError};
+use std::collections::BTreeMap;
 
 /// A face that is no quad.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -114,6 +115,9 @@ pub struct MeshData {
     pub quad_data: Vec<(String, Vec<f64>)>,
     /// Named numbers, one per hex (qualities). NaN means "no value".
     pub hex_data: Vec<(String, Vec<f64>)>,
+    /// The points that lie only on edges, faces or insides of cells of higher order, rising; those cells are in the other arrays
+    /// with their corners alone. See [`linearised`](Self::linearised).
+    pub middles: Vec<u32>,
     /// False if the file has connectivity only.
     pub has_coordinates: bool,
     /// What was recognised and what was passed over, for the user.
@@ -137,6 +141,7 @@ impl Default for MeshData {
             point_data: Vec::new(),
             quad_data: Vec::new(),
             hex_data: Vec::new(),
+            middles: Vec::new(),
             has_coordinates: true,
             notes: Vec::new(),
         }
@@ -238,6 +243,48 @@ impl MeshData {
         }
     }
 
+    /// The same without the [`middles`](Self::middles): cells of higher order have become straight ones for good. Other points keep
+    /// their order.
+    pub fn linearised(mut self) -> Self {
+        let middles = std::mem::take(&mut self.middles);
+        if middles.is_empty() {
+            return self;
+        }
+        let kept = |v: usize| middles.binary_search(&(v as u32)).is_err();
+        let n = self.points.len();
+        let mut number = vec![u32::MAX; n];
+        for (new, old) in (0..n).filter(|&v| kept(v)).enumerate() {
+            number[old] = new as u32;
+        }
+        self.renumber(&number);
+        self.notes.push(format!(
+            "cells of higher order are read as their corners; {} points between these are dropped",
+            middles.len()
+        ));
+        self
+    }
+
+    /// Gives points the numbers `number` (`u32::MAX`: dropped). The first point of each number keeps its data.
+    pub(crate) fn renumber(&mut self, number: &[u32]) {
+        let mut first: Vec<usize> = Vec::new();
+        for (old, &new) in number.iter().enumerate() {
+            if new as usize == first.len() {
+                first.push(old);
+            }
+        }
+        self.points = first.iter().map(|&v| self.points[v]).collect();
+        if let Some(tags) = &mut self.point_tags {
+            *tags = first.iter().map(|&v| tags[v]).collect();
+        }
+        for (_, values) in &mut self.point_data {
+            *values = first.iter().map(|&v| values[v]).collect();
+        }
+        let faces = self.quads.iter_mut().flatten().chain(self.other_faces.iter_mut().flat_map(|f| &mut f.vertices));
+        let cells = self.hexes.iter_mut().flatten().chain(self.tets.iter_mut().flatten());
+        let rest = self.wedges.iter_mut().flatten().chain(self.pyramids.iter_mut().flatten());
+        faces.chain(cells).chain(rest).for_each(|v| *v = number[*v as usize]);
+    }
+
     /// What `format` would drop without refusing: tags and data it has no place for, one sentence each.
     pub fn losses(&self, format: Format) -> Vec<String> {
         let mut losses = Vec::new();
@@ -255,15 +302,25 @@ impl MeshData {
         losses
     }
 
+    /// The names of each tag.
+    pub(crate) fn names_by_tag(&self) -> BTreeMap<(TagOn, i64), Vec<&str>> {
+        let mut names: BTreeMap<(TagOn, i64), Vec<&str>> = BTreeMap::new();
+        for name in &self.tag_names {
+            names.entry((name.on, name.tag)).or_default().push(&name.name);
+        }
+        names
+    }
+
     /// Each name of a tag with all it stands for, as `[tag, dimension]`: how meshio and files of VTK keep the names of groups.
     pub(crate) fn names_as_fields(&self) -> Vec<(&str, Vec<[i64; 2]>)> {
         let mut fields: Vec<(&str, Vec<[i64; 2]>)> = Vec::new();
+        let mut place_of: BTreeMap<&str, usize> = BTreeMap::new();
         for name in &self.tag_names {
-            let row = [name.tag, name.on.dimension()];
-            match fields.iter_mut().find(|(n, _)| *n == name.name) {
-                Some((_, rows)) => rows.push(row),
-                None => fields.push((&name.name, vec![row])),
+            let place = *place_of.entry(&name.name).or_insert(fields.len());
+            if place == fields.len() {
+                fields.push((&name.name, Vec::new()));
             }
+            fields[place].1.push([name.tag, name.on.dimension()]);
         }
         fields
     }

@@ -47,6 +47,16 @@ pub enum FormatError {
         /// The extensions that are known.
         known: String,
     },
+    /// The extension of a format that is not read, with what to do.
+    #[error("{path}: {title} cannot be read or written here; {remedy}")]
+    Foreign {
+        /// The path.
+        path: String,
+        /// What the format holds.
+        title: &'static str,
+        /// What to do.
+        remedy: &'static str,
+    },
     /// A name of a format that says nothing.
     #[error("unknown format `{given}`; known are {known}")]
     UnknownName {
@@ -86,6 +96,30 @@ impl Compression {
         }
     }
 }
+
+/// Extensions of formats that users try, what they hold, and what to do.
+const FOREIGN: [(&[&str], &str, &str); 7] = [
+    (
+        &["stl"],
+        "STL holds triangles and",
+        "hexfill fills surfaces of quads: mesh the shape with quads (Gmsh with Mesh.RecombineAll=1, a quad remesher such as QuadriFlow) \
+         and save it as .obj, .ply or .msh",
+    ),
+    (
+        &["step", "stp", "iges", "igs", "brep", "sat", "x_t"],
+        "CAD geometry has no mesh and",
+        "mesh its surface with quads (Gmsh with Mesh.RecombineAll=1) and save it as .msh or .vtk",
+    ),
+    (&["unv"], "I-DEAS universal", "convert it with Gmsh (gmsh -save -format msh41) or meshio to .msh or .vtk"),
+    (
+        &["bdf", "nas", "dat"],
+        "Nastran bulk data",
+        "convert it with Gmsh (gmsh -save -format msh41) or meshio to .msh or .vtk",
+    ),
+    (&["exo", "e", "ex2", "cgns", "med", "xdmf", "h5"], "this format", "convert it with meshio to .vtu or .msh"),
+    (&["meshb", "ovmb"], "the binary flavour of this format", "save it as text (.mesh, .ovm)"),
+    (&["3ds", "dae", "fbx", "glb", "gltf", "blend"], "this format", "export .obj or .ply with quads, not triangulated"),
+];
 
 impl Format {
     /// All formats, in the order of the documentation.
@@ -165,6 +199,9 @@ impl Format {
         let extension =
             stem.unwrap_or(path).extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
         Self::ALL.into_iter().find(|f| f.extensions().contains(&extension.as_str())).ok_or_else(|| {
+            if let Some((_, title, remedy)) = FOREIGN.iter().find(|(names, ..)| names.contains(&extension.as_str())) {
+                return FormatError::Foreign { path: path.display().to_string(), title, remedy };
+            }
             let known: Vec<_> = Self::ALL.iter().flat_map(|f| f.extensions()).map(|e| format!(".{e}")).collect();
             FormatError::UnknownExtension { path: path.display().to_string(), extension, known: known.join(", ") }
         })

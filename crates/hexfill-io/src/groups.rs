@@ -5,6 +5,7 @@
 //! group, gives the tag its number; other combinations get the next number that is free, in order of first appearance.
 
 use crate::data::{TagName, TagOn};
+use crate::limits::{GROUPS, GROUPS_OF_ONE};
 use rustc_hash::{FxHashMap, FxHashSet};
 
 /// One group: its name, its number, or both.
@@ -29,6 +30,8 @@ pub(crate) struct Groups {
     known: FxHashMap<Vec<u32>, Combination>,
     /// What a combination and one more group make.
     joined: FxHashMap<(Combination, u32), Combination>,
+    /// Some groups were passed over: there are too many, or too many of one member.
+    full: bool,
 }
 
 /// The tags of the combinations that are used.
@@ -46,6 +49,7 @@ impl Default for Groups {
             combinations: vec![Vec::new()],
             known: FxHashMap::from_iter([(Vec::new(), NONE)]),
             joined: FxHashMap::default(),
+            full: false,
         }
     }
 }
@@ -69,7 +73,9 @@ impl Groups {
         }
         let number = carried(name);
         let group = self.add(Group { name: number.is_none().then(|| name.to_owned()), number });
-        self.by_name.insert(name.to_owned(), group);
+        if !self.full {
+            self.by_name.insert(name.to_owned(), group);
+        }
         group
     }
 
@@ -79,7 +85,9 @@ impl Groups {
             return group;
         }
         let group = self.add(Group { name: None, number: Some(number) });
-        self.by_number.insert(number, group);
+        if !self.full {
+            self.by_number.insert(number, group);
+        }
         group
     }
 
@@ -90,6 +98,11 @@ impl Groups {
     }
 
     fn add(&mut self, group: Group) -> u32 {
+        if self.groups.len() >= GROUPS {
+            // All the rest is one group.
+            self.full = true;
+            return GROUPS as u32 - 1;
+        }
         self.groups.push(group);
         self.groups.len() as u32 - 1
     }
@@ -99,7 +112,12 @@ impl Groups {
         if let Some(&joined) = self.joined.get(&(combination, group)) {
             return joined;
         }
-        let mut members = self.combinations[combination as usize].clone();
+        let members = &self.combinations[combination as usize];
+        if members.len() >= GROUPS_OF_ONE || self.combinations.len() >= GROUPS {
+            self.full |= members.binary_search(&group).is_err();
+            return combination;
+        }
+        let mut members = members.clone();
         if let Err(at) = members.binary_search(&group) {
             members.insert(at, group);
         }
@@ -110,6 +128,12 @@ impl Groups {
         }
         self.joined.insert((combination, group), joined);
         joined
+    }
+
+    /// What was passed over because it is too much, in words.
+    pub(crate) fn note(&self) -> Option<String> {
+        let limit = format!("at most {GROUPS_OF_ONE} groups of one point, face or cell and {GROUPS} of all are kept");
+        self.full.then(|| format!("there are too many groups: {limit}"))
     }
 
     /// Whether a combination is in a group.

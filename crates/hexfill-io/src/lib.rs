@@ -4,8 +4,8 @@
 //! and renamed when it is complete. gzip and Zstandard are unpacked and packed on the way. Coordinates come back bit for
 //! bit in every text format: the shortest decimal that reads back to the same number is written.
 //!
-//! Nothing here trusts a file: counts are believed only as far as there is data, and every error says where it is,
-//! what was expected and what to do.
+//! Nothing here trusts a file: counts are believed only as far as there is data, compressed files unpack to at most 256 MiB and 16
+//! bytes for each of theirs, and every error says where it is, what was expected and what to do.
 //!
 //! ```
 //! use hexfill_io::{Format, MeshData, read_from, write_to};
@@ -26,15 +26,18 @@ mod error;
 mod format;
 mod formats;
 mod groups;
+mod limits;
 pub mod orders;
 mod save;
 mod source;
+mod weld;
 mod write;
 
 pub use data::{MeshData, OtherFace, TagName, TagOn};
 pub use error::{Place, Position, ReadError, WriteError};
 pub use format::{Compression, Format, FormatError};
 pub use save::{Encoding, check_path, write_path, write_path_with, write_to, write_to_with};
+pub use weld::{Weld, closing_tolerance, weld};
 
 use formats::{inp, json, medit, msh, obj, off, ovm, ply, vtk, vtu};
 use source::Source;
@@ -67,7 +70,7 @@ pub fn read_path(path: &Path, format: Option<Format>) -> Result<MeshData, ReadEr
 pub fn read_from(reader: impl Read, format: Format, name: &str) -> Result<MeshData, ReadError> {
     let (unpacked, compression) =
         compress::unpacked(reader).map_err(|source| ReadError::Io { file: name.to_owned(), source })?;
-    let source = Source::new(unpacked, name, format);
+    let source = Source::new(unpacked, name, format).with_packed(compression.is_some());
     let mut mesh = match format {
         Format::Obj => obj::read(source),
         Format::Off => off::read(source),

@@ -6,11 +6,9 @@
 use crate::data::TagName;
 use crate::error::{Place, Position, ReadError, snippet};
 use crate::format::Format;
+use crate::limits::RESERVE;
 use std::fmt::Display;
 use std::io::{self, BufRead, Read};
-
-/// Most items (or bytes) that are reserved on the word of a file.
-pub(crate) const RESERVE: usize = 1 << 16;
 
 /// Capacity to reserve for a claimed count.
 pub(crate) fn reserve(claimed: u64) -> usize {
@@ -37,6 +35,8 @@ pub(crate) struct Source<'r> {
     binary: bool,
     /// The current line is to be read once more.
     again: bool,
+    /// The bytes come out of gzip or Zstandard.
+    packed: bool,
     /// Names of tags in comments of this program.
     tag_names: Vec<TagName>,
 }
@@ -55,6 +55,7 @@ impl<'r> Source<'r> {
             comma: false,
             binary: false,
             again: false,
+            packed: false,
             tag_names: Vec::new(),
         }
     }
@@ -63,6 +64,16 @@ impl<'r> Source<'r> {
     pub(crate) fn with_comments(mut self, byte: u8) -> Self {
         self.comment = Some(byte);
         self
+    }
+
+    /// The file is compressed as a whole.
+    pub(crate) fn with_packed(mut self, packed: bool) -> Self {
+        self.packed = packed;
+        self
+    }
+
+    pub(crate) fn is_packed(&self) -> bool {
+        self.packed
     }
 
     /// Commas separate words, too.

@@ -415,6 +415,44 @@ def write_meshio(directory, due):
         yield name, "exact" if binary else "single", "notags", "quads"
 
 
+def write_quadratic(directory, due):
+    """quad8 and hex20, and quad9 and hex27 from Gmsh: read here as their corners."""
+    points, middle = [list(p) for p in due.points], {}
+
+    def between(a, b):
+        if (min(a, b), max(a, b)) not in middle:
+            middle[min(a, b), max(a, b)] = len(points)
+            points.append(list((due.points[a] + due.points[b]) / 2))
+        return middle[min(a, b), max(a, b)]
+
+    quad_edges = [(0, 1), (1, 2), (2, 3), (3, 0)]
+    hex_edges = quad_edges + [(4, 5), (5, 6), (6, 7), (7, 4)] + [(k, k + 4) for k in range(4)]
+    quads = [q + [between(q[a], q[b]) for a, b in quad_edges] for q in due.quads]
+    hexes = [h + [between(h[a], h[b]) for a, b in hex_edges] for h in due.hexes]
+    mesh = meshio.Mesh(np.array(points), [("quad8", np.array(quads)), ("hexahedron20", np.array(hexes))])
+    for name, file_format in [("vtu", "vtu"), ("vtk", "vtk42"), ("msh", "gmsh22"), ("inp", "abaqus")]:
+        name = f"quadratic-meshio.{name}"
+        meshio.write(directory / name, mesh, file_format=file_format)
+        yield name, "single", "notags", "both"
+    gmsh.initialize()
+    gmsh.option.setNumber("General.Terminal", 0)
+    gmsh.open(str(directory / "quadratic-meshio.msh"))
+    try:
+        gmsh.model.mesh.setOrder(1)
+        gmsh.model.mesh.setOrder(2)
+        for version in (2.2, 4.1):
+            for binary in (0, 1):
+                gmsh.option.setNumber("Mesh.MshFileVersion", version)
+                gmsh.option.setNumber("Mesh.Binary", binary)
+                name = f"quadratic-gmsh-{version}-{'binary' if binary else 'ascii'}.msh"
+                gmsh.write(name)
+                yield name, "single", "notags", "both"
+        gmsh.write("quadratic-gmsh.inp")
+        yield "quadratic-gmsh.inp", "single", "notags", "both"
+    finally:
+        gmsh.finalize()
+
+
 def write_pyvista(directory, due):
     n_quads, n_hexes = len(due.quads), len(due.hexes)
     cells = np.concatenate([np.ravel([[4, *q] for q in due.quads]), np.ravel([[8, *h] for h in due.hexes])])
@@ -518,7 +556,7 @@ def main():
         return
     due = load_expected(directory)
     os.chdir(directory)  # Gmsh writes the path it is given into some files
-    for writer in (write_meshio, write_pyvista, write_gmsh):
+    for writer in (write_meshio, write_quadratic, write_pyvista, write_gmsh):
         for line in writer(directory, due):
             print(*line)
 

@@ -333,7 +333,9 @@ fn voxels_and_pixels_are_put_in_order() {
 #[test]
 fn names_and_paths() {
     let message = read_path("surface.stl".as_ref(), None).unwrap_err().to_string();
-    assert!(message.contains("`stl`") && message.contains(".obj, .off, .ply, .vtk"), "{message}");
+    assert!(message.contains("STL holds triangles") && message.contains("quads"), "{message}");
+    let message = read_path("surface.xyz".as_ref(), None).unwrap_err().to_string();
+    assert!(message.contains("`xyz`") && message.contains(".obj, .off, .ply, .vtk"), "{message}");
     let message = read_path("/nonexistent/surface.obj".as_ref(), None).unwrap_err().to_string();
     assert!(message.contains("/nonexistent/surface.obj"), "{message}");
     let directory = std::env::temp_dir();

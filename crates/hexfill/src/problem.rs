@@ -3,7 +3,7 @@
 use crate::catalog;
 use crate::components::depths;
 use hexfill_geometry::{cone, sub};
-use hexfill_io::{Format, MeshData, ReadError, TagName, TagOn};
+use hexfill_io::{Format, MeshData, ReadError, TagName, TagOn, closing_tolerance};
 use hexfill_mesh::{Offenders, QuadSurface, SignatureError, SurfaceError, parse_surface_signature};
 use std::path::Path;
 
@@ -44,6 +44,26 @@ pub enum ProblemError {
         name: String,
         /// What is wrong.
         source: SurfaceError,
+    },
+    /// The faces leave seams open: points in one spot that are not one point.
+    #[error("{name}: {source}; welding closes it: merge points at most {tolerance} apart (--weld {tolerance})")]
+    Seams {
+        /// The input.
+        name: String,
+        /// What is open.
+        source: SurfaceError,
+        /// The least tolerance (rounded up) at which welding closes the surface.
+        tolerance: f64,
+    },
+    /// The file has cells of higher order.
+    #[error(
+        "{name} has cells of higher order, {points} points lie between their corners; read it as straight ones (--linearise)"
+    )]
+    HigherOrder {
+        /// The input.
+        name: String,
+        /// Points that are no corners.
+        points: usize,
     },
     /// The file has no faces at all.
     #[error("{name} has no faces{}; give a closed surface of quads", if *hexes > 0 { format!(" ({hexes} hexes: is it a mesh? then use `hexfill check`)") } else { String::new() })]
@@ -121,6 +141,9 @@ impl Problem {
     /// [`ProblemError`].
     pub fn from_data(name: &str, data: &MeshData) -> Result<Self, ProblemError> {
         let surface_error = |source| ProblemError::Surface { name: name.to_owned(), source };
+        if !data.middles.is_empty() {
+            return Err(ProblemError::HigherOrder { name: name.to_owned(), points: data.middles.len() });
+        }
         if !data.other_faces.is_empty() {
             let offenders = data
                 .other_faces
@@ -137,7 +160,16 @@ impl Problem {
         } else {
             data.quads.iter().flatten().map(|&v| v as usize + 1).max().unwrap_or(0)
         };
-        let mut surface = QuadSurface::try_new(n_vertices, &data.quads).map_err(surface_error)?;
+        let mut surface = match QuadSurface::try_new(n_vertices, &data.quads) {
+            Ok(surface) => surface,
+            Err(source @ SurfaceError::Open { .. }) => {
+                return Err(match closing_tolerance(data) {
+                    Some(tolerance) => ProblemError::Seams { name: name.to_owned(), source, tolerance },
+                    None => surface_error(source),
+                });
+            }
+            Err(source) => return Err(surface_error(source)),
+        };
         let mut notes = data.notes.clone();
         if !data.hexes.is_empty() {
             notes.push(format!("{} hexes of the file are not used: only its faces are filled", data.hexes.len()));

@@ -238,7 +238,7 @@ struct LookupRow {
 }
 
 fn lookup(surface: &str, atlas: &Atlas, console: &Console) -> anyhow::Result<Exit> {
-    let problem = files::load_problem(surface, None)?;
+    let problem = files::load_problem(surface, &files::InputArgs::default())?;
     let Some((cavity, _)) = Cavity::from_surface(&problem.surface) else {
         bail!("{surface} is not one sphere of at most {MAX_QUADS} quads; the atlas knows no other surfaces");
     };

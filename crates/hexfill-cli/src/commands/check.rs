@@ -6,7 +6,7 @@ use crate::files;
 use anyhow::{Context as _, bail};
 use hexfill::Context;
 use hexfill::check::{Judged, Options, Rules, cell_quality, certificate_of, judge, verify_certificate, write_cell_csv};
-use hexfill::io::{Format, MeshData};
+use hexfill::io::MeshData;
 use hexfill::mesh::cube::FACETS;
 use std::collections::BTreeSet;
 use std::io::Write;
@@ -34,9 +34,8 @@ pub struct CheckArgs {
     /// Write the quality of every cell as CSV.
     #[arg(long, value_name = "OUT")]
     csv: Option<String>,
-    /// Format of the mesh.
-    #[arg(long, value_name = "FORMAT", value_parser = files::parse_format)]
-    from: Option<Format>,
+    #[command(flatten)]
+    reading: files::InputArgs,
 }
 
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
@@ -63,7 +62,7 @@ fn faces_not_on_boundary(data: &MeshData) -> usize {
 
 /// Judges and reports; exit code 1 if a rule is broken.
 pub fn run(args: &CheckArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
-    let data = files::read_data(&args.mesh, args.from)?;
+    let data = files::read_data(&args.mesh, &args.reading)?;
     for note in &data.notes {
         console.note(note);
     }
@@ -80,7 +79,11 @@ pub fn run(args: &CheckArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Re
             ));
         }
     }
-    let problem = args.surface.as_ref().map(|s| files::load_problem(s, None)).transpose()?;
+    let problem = args
+        .surface
+        .as_ref()
+        .map(|s| files::load_problem(s, &files::InputArgs { from: None, ..args.reading.clone() }))
+        .transpose()?;
     let quads: Option<Vec<[u32; 4]>> =
         problem.as_ref().map(|p| p.surface.quads().iter().map(|q| q.map(|v| v.0)).collect());
     let judged = Judged {

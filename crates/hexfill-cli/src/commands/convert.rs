@@ -13,9 +13,8 @@ pub struct ConvertArgs {
     /// The file to write; format by extension; `-` for stdout.
     #[arg(short, long, value_name = "OUT")]
     output: String,
-    /// Format of the input.
-    #[arg(long, value_name = "FORMAT", value_parser = files::parse_format)]
-    from: Option<Format>,
+    #[command(flatten)]
+    reading: files::InputArgs,
     /// Format of the output.
     #[arg(long, value_name = "FORMAT", value_parser = files::parse_format)]
     to: Option<Format>,
@@ -25,9 +24,9 @@ pub struct ConvertArgs {
 pub fn run(args: &ConvertArgs, console: &Console) -> anyhow::Result<Exit> {
     files::check_output(&args.output, args.to)?;
     let data = if hexfill::is_named(&args.input) {
-        files::load_problem(&args.input, None)?.data()
+        files::load_problem(&args.input, &args.reading)?.data()
     } else {
-        files::read_data(&args.input, args.from)?
+        files::read_data(&args.input, &args.reading)?
     };
     for note in &data.notes {
         console.note(note);

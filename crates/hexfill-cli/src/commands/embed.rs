@@ -61,7 +61,7 @@ struct Output {
 /// Embeds, judges, writes; exit code 1 if some hex is not certified.
 pub fn run(args: &EmbedArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
     files::check_output(&args.output, args.to)?;
-    let mut data = files::read_data(&args.mesh, args.from)?;
+    let mut data = files::read_data(&args.mesh, &args.from.into())?;
     for note in std::mem::take(&mut data.notes) {
         console.note(note);
     }

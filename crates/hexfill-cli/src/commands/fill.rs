@@ -25,9 +25,8 @@ pub struct FillArgs {
     /// The mesh to write; format by extension; `-` for stdout. With --count the files are numbered OUT-1, OUT-2, ...
     #[arg(short, long, value_name = "OUT")]
     output: Option<String>,
-    /// Format of the surface.
-    #[arg(long, value_name = "FORMAT", value_parser = files::parse_format)]
-    from: Option<Format>,
+    #[command(flatten)]
+    reading: files::InputArgs,
     /// Format of the mesh.
     #[arg(long, value_name = "FORMAT", value_parser = files::parse_format)]
     to: Option<Format>,
@@ -170,7 +169,7 @@ struct Output {
 pub fn run(args: &FillArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
     let start = Instant::now();
     check_files(args, console)?;
-    let mut problem = files::load_problem(&args.surface, args.from)?;
+    let mut problem = files::load_problem(&args.surface, &args.reading)?;
     problem.notes.extend(crossing_note(&problem));
     for note in &problem.notes {
         console.note(note);
@@ -354,7 +353,7 @@ const SIMPLIFY_BALLS: u64 = 200_000;
 /// Where the tetrahedra of an interior that is not a ball come from.
 fn interior(args: &FillArgs) -> anyhow::Result<InteriorFrom> {
     if let Some(file) = &args.tets {
-        let data = files::read_data(file, None)?;
+        let data = files::read_data(file, &files::InputArgs::default())?;
         if data.tets.is_empty() {
             bail!("{file} has no tetrahedra");
         }

@@ -4,7 +4,7 @@ use crate::console::Console;
 use crate::exit::Exit;
 use crate::files;
 use anyhow::bail;
-use hexfill::io::{Format, MeshData};
+use hexfill::io::MeshData;
 use hexfill::{Problem, SurfaceInfo, describe_mesh, describe_surface};
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -14,9 +14,8 @@ use std::io::Write as _;
 pub struct InfoArgs {
     /// A surface or a mesh: a file, `-`, a catalogue name or a signature.
     input: String,
-    /// Format of the input.
-    #[arg(long, value_name = "FORMAT", value_parser = files::parse_format)]
-    from: Option<Format>,
+    #[command(flatten)]
+    reading: files::InputArgs,
     /// Where an odd cycle bounds inside, so that no hex mesh exists: write its edges, as lines (.obj) or as vertex pairs (.txt).
     #[arg(long, value_name = "FILE")]
     cycle: Option<String>,
@@ -32,9 +31,9 @@ pub fn run(args: &InfoArgs, console: &Console) -> anyhow::Result<Exit> {
         files::check_distinct(&[&args.input, file])?;
     }
     let problem = if hexfill::is_named(&args.input) {
-        files::load_problem(&args.input, None)?
+        files::load_problem(&args.input, &args.reading)?
     } else {
-        let data = files::read_data(&args.input, args.from)?;
+        let data = files::read_data(&args.input, &args.reading)?;
         if !data.hexes.is_empty() {
             if args.cycle.is_some() {
                 bail!("{}: --cycle is about surfaces; this is a hex mesh", args.input);

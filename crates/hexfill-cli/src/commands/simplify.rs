@@ -79,7 +79,7 @@ pub fn run(args: &SimplifyArgs, console: &Console, ctx: &Context<'_>) -> anyhow:
         bail!("--json and -o - both write to stdout; give a file to one of them");
     }
     files::check_distinct(&[&args.mesh, &args.output])?;
-    let mut data = files::read_data(&args.mesh, args.from)?;
+    let mut data = files::read_data(&args.mesh, &args.from.into())?;
     for note in std::mem::take(&mut data.notes) {
         console.note(note);
     }

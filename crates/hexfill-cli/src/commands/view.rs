@@ -28,7 +28,7 @@ pub struct ViewArgs {
 /// Reads a mesh and writes its page or picture.
 pub fn run(args: &ViewArgs, console: &Console) -> anyhow::Result<Exit> {
     files::check_folder(&args.output)?;
-    let data = files::read_data(&args.mesh, args.from)?;
+    let data = files::read_data(&args.mesh, &args.from.into())?;
     for note in &data.notes {
         console.note(note);
     }

@@ -20,7 +20,7 @@ pub(crate) use write::write;
 /// The surface of all quads on hexes; not a name of a tag.
 const BOUNDARY: &str = "BOUNDARY";
 
-/// What element types are kept, and with how many nodes.
+/// What element types are kept, and with how many corners.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Kind {
     Face(usize),
@@ -29,30 +29,34 @@ enum Kind {
     Other,
 }
 
-fn kind_of(element_type: &str) -> Kind {
+/// The kind of an element type and its number of nodes, corners first.
+fn kind_of(element_type: &str) -> (Kind, usize) {
     // The letters after the number of nodes choose an integration rule.
     let is = |names: &[&str]| {
         names.iter().any(|name| {
             element_type.strip_prefix(name).is_some_and(|rest| !rest.starts_with(|c: char| c.is_ascii_digit()))
         })
     };
-    if is(&["C3D8", "DC3D8", "AC3D8"]) {
-        Kind::Hex
-    } else if is(&["S4", "SC4", "M3D4", "SFM3D4", "R3D4", "CPS4", "CPE4", "CAX4", "DC2D4", "DS4", "CPEG4"])
-        || element_type == "S4R5"
-    {
-        Kind::Face(4)
-    } else if is(&["S3", "STRI3", "M3D3", "SFM3D3", "R3D3", "CPS3", "CPE3", "CAX3", "DC2D3", "DS3"]) {
-        Kind::Face(3)
-    } else if is(&["C3D4", "DC3D4", "AC3D4"]) {
-        Kind::Small(4)
-    } else if is(&["C3D5", "DC3D5"]) {
-        Kind::Small(5)
-    } else if is(&["C3D6", "DC3D6", "AC3D6"]) {
-        Kind::Small(6)
-    } else {
-        Kind::Other
+    let kinds: [(Kind, usize, &[&str]); 13] = [
+        (Kind::Hex, 8, &["C3D8", "DC3D8", "AC3D8"]),
+        (Kind::Face(4), 4, &["S4", "SC4", "M3D4", "SFM3D4", "R3D4", "CPS4", "CPE4", "CAX4", "DC2D4", "DS4", "CPEG4"]),
+        (Kind::Face(3), 3, &["S3", "STRI3", "M3D3", "SFM3D3", "R3D3", "CPS3", "CPE3", "CAX3", "DC2D3", "DS3"]),
+        (Kind::Small(4), 4, &["C3D4", "DC3D4", "AC3D4"]),
+        (Kind::Small(5), 5, &["C3D5", "DC3D5"]),
+        (Kind::Small(6), 6, &["C3D6", "DC3D6", "AC3D6"]),
+        (Kind::Hex, 20, &["C3D20", "DC3D20", "AC3D20"]),
+        (Kind::Hex, 27, &["C3D27"]),
+        (Kind::Face(4), 8, &["S8", "M3D8", "SFM3D8", "CPS8", "CPE8", "CAX8", "DC2D8", "DS8"]),
+        (Kind::Face(4), 9, &["S9", "M3D9"]),
+        (Kind::Face(3), 6, &["STRI65", "S6", "M3D6", "SFM3D6", "CPS6", "CPE6", "CAX6", "DC2D6", "DS6"]),
+        (Kind::Small(4), 10, &["C3D10", "DC3D10", "AC3D10"]),
+        (Kind::Small(6), 15, &["C3D15", "DC3D15", "AC3D15"]),
+    ];
+    if element_type == "S4R5" {
+        return (Kind::Face(4), 4);
     }
+    let found = kinds.iter().find(|(_, _, names)| is(names));
+    found.map_or((Kind::Other, 0), |&(kind, n_nodes, _)| (kind, n_nodes))
 }
 
 /// The block of data lines that a keyword line opens.
@@ -60,7 +64,7 @@ enum Block {
     Nothing,
     Nodes,
     Elements {
-        kind: Kind,
+        kind: (Kind, usize),
         name: String,
         set: Option<u32>,
     },
@@ -280,10 +284,15 @@ fn read_node(r: &mut Reader<'_>) -> Result<(), ReadError> {
     Ok(())
 }
 
-fn read_element(r: &mut Reader<'_>, kind: Kind, name: &str, set: Option<u32>) -> Result<(), ReadError> {
+fn read_element(
+    r: &mut Reader<'_>,
+    (kind, n_nodes): (Kind, usize),
+    name: &str,
+    set: Option<u32>,
+) -> Result<(), ReadError> {
     let span = r.s.need_word("an element number")?;
     let number = r.s.integer(span, "an element number")?;
-    let n_nodes = match kind {
+    let corners = match kind {
         Kind::Face(n) | Kind::Small(n) => n,
         Kind::Hex => 8,
         Kind::Other => 0,
@@ -313,11 +322,12 @@ fn read_element(r: &mut Reader<'_>, kind: Kind, name: &str, set: Option<u32>) ->
         if let Some(span) = r.s.peek_word() {
             return Err(r.s.malformed(format!("{n_nodes} nodes for {name}"), span, "correct the line or TYPE="));
         }
-        match <[u32; 8]>::try_from(nodes.as_slice()) {
+        let nodes = r.out.corners(&nodes, corners);
+        match <[u32; 8]>::try_from(nodes) {
             Ok(hex) => r.out.hex(hex, 0),
-            Err(_) if matches!(kind, Kind::Face(_)) => r.out.face(&nodes, 0),
+            Err(_) if matches!(kind, Kind::Face(_)) => r.out.face(nodes, 0),
             Err(_) => {
-                r.out.small_cell(&nodes, 0);
+                r.out.small_cell(nodes, 0);
                 Slot::Elsewhere
             }
         }

@@ -152,12 +152,13 @@ pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
         write_point(out, point, " ")?;
         out.write_all(b"\n")?;
     }
+    let names = data.names_by_tag();
     let mut group = None;
     for (face, tag) in data.tagged_faces() {
         if has_cell_tags(data) && group != Some(tag) {
-            let names = data.tag_names.iter().filter(|n| n.on == TagOn::Faces && n.tag == tag);
+            let names = names.get(&(TagOn::Faces, tag)).into_iter().flatten();
             let words: Vec<String> =
-                names.map(|n| n.name.replace(|c: char| c.is_whitespace() || c.is_control(), "_")).collect();
+                names.map(|n| n.replace(|c: char| c.is_whitespace() || c.is_control(), "_")).collect();
             writeln!(out, "g {}", if words.is_empty() { name_of(tag) } else { words.join(" ") })?;
             group = Some(tag);
         }

@@ -92,11 +92,7 @@ struct SetNames<'a>(BTreeMap<(TagOn, i64), Vec<&'a str>>);
 
 impl<'a> SetNames<'a> {
     fn new(data: &'a MeshData) -> Self {
-        let mut names: BTreeMap<(TagOn, i64), Vec<&'a str>> = BTreeMap::new();
-        for name in &data.tag_names {
-            names.entry((name.on, name.tag)).or_default().push(&name.name);
-        }
-        Self(names)
+        Self(data.names_by_tag())
     }
 
     /// The names of a tag, fit for a keyword line; none for 0.

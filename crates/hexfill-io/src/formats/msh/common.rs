@@ -26,7 +26,24 @@ pub(crate) const PYRAMID: i64 = 7;
 
 /// Number of nodes of an element type, if it is known.
 pub(crate) fn nodes_of(element_type: i64) -> Option<usize> {
+    let high = [(36, 16), (37, 25), (47, 49), (92, 64), (93, 125)];
+    if let Some((_, n)) = high.iter().find(|(t, _)| *t == element_type) {
+        return Some(*n);
+    }
     usize::try_from(element_type).ok().and_then(|t| NODES.get(t)).copied().filter(|&n| n > 0)
+}
+
+/// The straight type of an element type of higher order, whose corners come first, and their number.
+fn straight(element_type: i64) -> (i64, usize) {
+    match element_type {
+        9 | 20 | 21 | 22 | 23 | 24 | 25 => (TRIANGLE, 3),
+        10 | 16 | 36 | 37 | 47 => (QUAD, 4),
+        11 | 29 | 30 | 31 => (TET, 4),
+        12 | 17 | 92 | 93 => (HEX, 8),
+        13 | 18 => (WEDGE, 6),
+        14 | 19 => (PYRAMID, 5),
+        _ => (element_type, usize::MAX),
+    }
 }
 
 /// From the numbers of a file to positions in it. Numbers that simply count up cost nothing.
@@ -332,6 +349,8 @@ impl Reader<'_> {
         combination: Combination,
         entity: i64,
     ) {
+        let (element_type, corners) = straight(element_type);
+        let nodes = self.out.corners(nodes, corners);
         let slot = match (element_type, <[u32; 8]>::try_from(nodes)) {
             (HEX, Ok(hex)) => self.out.hex(hex, 0),
             (TRIANGLE | QUAD, _) => self.out.face(nodes, 0),
@@ -491,9 +510,13 @@ pub(crate) fn elements(data: &MeshData) -> impl Iterator<Item = (i64, &[u32], i6
     faces.chain(hexes).chain(tets).chain(wedges).chain(pyramids)
 }
 
-/// Dimension of an element type that is written.
+/// Dimension of an element type (0 for those that are passed over).
 pub(crate) fn dimension(element_type: i64) -> u8 {
-    if element_type == TRIANGLE || element_type == QUAD { 2 } else { 3 }
+    match straight(element_type).0 {
+        1 | 15 => 0,
+        TRIANGLE | QUAD => 2,
+        _ => 3,
+    }
 }
 
 /// Name of the physical group of what has no tag, where all must have one.
@@ -517,9 +540,10 @@ impl Physical {
         let mut physical = Self { numbers: BTreeMap::new(), names: BTreeMap::new() };
         // The group of a name is the tag that has no other name.
         let mut group_of: BTreeMap<(u8, &str), i64> = BTreeMap::new();
+        let all_names = data.names_by_tag();
         let named = |dim: u8, tag: i64| {
             let on = if dim == 2 { TagOn::Faces } else { TagOn::Cells };
-            data.tag_names.iter().filter(move |n| n.on == on && n.tag == tag).map(|n| n.name.as_str())
+            all_names.get(&(on, tag)).into_iter().flatten().copied()
         };
         for &(dim, tag) in &tags {
             let names: Vec<&str> = named(dim, tag).collect();

@@ -26,11 +26,29 @@ fn nodes_of(cell_type: u8) -> Option<usize> {
     })
 }
 
-/// Adds a cell.
+/// The straight type of a cell of higher order, and its number of corners, which come first.
+fn straight(cell_type: u8, n_nodes: usize) -> Option<(u8, usize)> {
+    Some(match cell_type {
+        22 | 34 | 69 | 76 => (TRIANGLE, 3),
+        23 | 28 | 30 | 70 | 77 => (QUAD, 4),
+        36 => (POLYGON, n_nodes / 2),
+        24 | 71 | 78 => (TETRA, 4),
+        25 | 29 | 33 | 72 | 79 => (HEXAHEDRON, 8),
+        26 | 31 | 32 | 73 | 80 => (WEDGE, 6),
+        27 | 37 | 74 | 81 => (PYRAMID, 5),
+        _ => return None,
+    })
+}
+
+/// Adds a cell; of one of higher order its corners.
 ///
 /// # Errors
 /// The number of nodes that it should have (as text).
 pub(crate) fn add(out: &mut Assembly, cell_type: u8, nodes: &[u32]) -> Result<Slot, String> {
+    if let Some((straight, corners)) = straight(cell_type, nodes.len()) {
+        let corners = out.corners(nodes, corners);
+        return add(out, straight, corners);
+    }
     if let Some(due) = nodes_of(cell_type)
         && nodes.len() != due
     {
@@ -70,7 +88,6 @@ fn title(cell_type: u8) -> String {
         3 | 4 | 21 => "line cells".to_owned(),
         6 => "triangle strips".to_owned(),
         42 => "polyhedra".to_owned(),
-        22..=37 => format!("cells of higher order (VTK type {cell_type})"),
         _ => format!("cells of VTK type {cell_type}"),
     }
 }

@@ -184,6 +184,15 @@ impl Reader<'_> {
 
     /// An array of `n` values after the current line.
     fn values(&mut self, n: u64, scalar: Scalar, what: &str) -> Result<Values, ReadError> {
+        // A bit becomes a number: more than there are points and cells are an attack.
+        let expected = 64 * (self.out.point_count() + self.slots.len() + 1) as u64;
+        if scalar == Scalar::Bit && n > expected {
+            return Err(self.s.malformed_text(
+                format!("fewer than {expected} bits of {what}"),
+                n.to_string(),
+                "correct the count",
+            ));
+        }
         if self.binary {
             let bytes = if scalar == Scalar::Bit { n.div_ceil(8) } else { n.saturating_mul(scalar.size() as u64) };
             self.s.set_binary(true);

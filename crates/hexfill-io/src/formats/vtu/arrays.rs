@@ -80,11 +80,12 @@ fn decode_group(text: &mut &[u8], out: &mut Vec<u8>) -> Option<()> {
     Some(())
 }
 
-/// The bytes of one array: header, then plain data or zlib blocks.
+/// The bytes of one array: header, then plain data or zlib blocks. They are at most `limit`.
 ///
 /// # Errors
 /// What is wrong, as text.
-pub(crate) fn unpack(mut bytes: Bytes<'_>, layout: Layout) -> Result<Vec<u8>, &'static str> {
+pub(crate) fn unpack(mut bytes: Bytes<'_>, layout: Layout, limit: u64) -> Result<Vec<u8>, &'static str> {
+    const LARGE: &str = "data beyond the memory limit (256 MiB and 16 bytes for each byte of the file)";
     const SHORT: &str = "data that ends too early, or is not base64";
     let h = layout.header_size as u64;
     let number = |chunk: &[u8]| match (<[u8; 4]>::try_from(chunk), <[u8; 8]>::try_from(chunk), layout.big_endian) {
@@ -96,7 +97,7 @@ pub(crate) fn unpack(mut bytes: Bytes<'_>, layout: Layout) -> Result<Vec<u8>, &'
     };
     let first = number(&bytes.take(h).ok_or(SHORT)?);
     if !layout.zlib {
-        return bytes.take(first).ok_or(SHORT);
+        return if first > limit { Err(LARGE) } else { bytes.take(first).ok_or(SHORT) };
     }
     if first == 0 {
         return Ok(Vec::new());
@@ -108,6 +109,9 @@ pub(crate) fn unpack(mut bytes: Bytes<'_>, layout: Layout) -> Result<Vec<u8>, &'
     for (i, &packed) in sizes[2..].iter().enumerate() {
         let is_last = i as u64 + 1 == first;
         let due = if is_last && last_size != 0 { last_size } else { block_size };
+        if due > limit - out.len() as u64 {
+            return Err(LARGE);
+        }
         let block = bytes.take(packed).ok_or(SHORT)?;
         let got = ZlibDecoder::new(block.as_slice()).take(due).read_to_end(&mut out);
         if got.ok() != usize::try_from(due).ok() {
@@ -126,11 +130,11 @@ mod tests {
     #[test]
     fn header_and_data_in_one_or_two_pieces() {
         // 3 bytes "abc", encoded as one text and as two.
-        assert_eq!(unpack(Bytes::base64(b"AwAAAGFiYw=="), PLAIN).unwrap(), b"abc");
-        assert_eq!(unpack(Bytes::base64(b" AwAA AA==\nYWJj "), PLAIN).unwrap(), b"abc");
-        assert_eq!(unpack(Bytes::Raw(b"\x03\0\0\0abcd"), PLAIN).unwrap(), b"abc");
+        assert_eq!(unpack(Bytes::base64(b"AwAAAGFiYw=="), PLAIN, 9).unwrap(), b"abc");
+        assert_eq!(unpack(Bytes::base64(b" AwAA AA==\nYWJj "), PLAIN, 9).unwrap(), b"abc");
+        assert_eq!(unpack(Bytes::Raw(b"\x03\0\0\0abcd"), PLAIN, 9).unwrap(), b"abc");
         for bad in ["AwAAAGFi", "Aw=AAGFiYw==", "AwAA*GFiYw==", "", "////////"] {
-            assert!(unpack(Bytes::base64(bad.as_bytes()), PLAIN).is_err(), "{bad}");
+            assert!(unpack(Bytes::base64(bad.as_bytes()), PLAIN, 9).is_err(), "{bad}");
         }
     }
 
@@ -140,7 +144,7 @@ mod tests {
         for claim in [u64::MAX, u64::MAX / 8, 1 << 40] {
             let mut bytes = claim.to_le_bytes().to_vec();
             bytes.extend([0; 64]);
-            assert!(unpack(Bytes::Raw(&bytes), layout).is_err());
+            assert!(unpack(Bytes::Raw(&bytes), layout, u64::MAX).is_err());
         }
     }
 }

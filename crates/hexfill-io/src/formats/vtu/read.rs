@@ -6,9 +6,11 @@ use crate::assembly::{Assembly, Values};
 use crate::data::MeshData;
 use crate::error::{Place, Position, ReadError, snippet};
 use crate::formats::vtk::{Scalar, cells};
+use crate::limits::unpacked_inside;
 use crate::source::{Source, parse_integer, parse_number};
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::{Reader, XmlVersion};
+use std::cell::Cell;
 
 /// Where an array stands in a piece.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,6 +72,8 @@ struct File<'a> {
     /// The appended section after its underscore, and whether it is base64.
     appended: Option<(&'a [u8], bool)>,
     format: crate::format::Format,
+    /// Bytes that arrays may still unpack to, all together.
+    left: Cell<u64>,
 }
 
 impl File<'_> {
@@ -126,10 +130,11 @@ impl File<'_> {
                 return Err(self.malformed(array.start, "format ascii, binary or appended", given, "repair the file"));
             }
         };
-        let data = unpack(bytes, self.layout).map_err(|given| {
+        let data = unpack(bytes, self.layout, self.left.get()).map_err(|given| {
             let expected = format!("the data of array `{}`", array.name);
             self.malformed(array.start, expected, given, "the file is truncated or damaged: export it again")
         })?;
+        self.left.set(self.left.get() - data.len() as u64);
         Ok(scalar.decode(&data, self.layout.big_endian))
     }
 
@@ -167,6 +172,7 @@ pub(crate) fn read(mut source: Source<'_>) -> Result<MeshData, ReadError> {
         layout: Layout { big_endian: false, header_size: 4, zlib: false },
         appended: None,
         format: source.format(),
+        left: Cell::new(unpacked_inside(bytes.len() as u64, source.is_packed())),
     };
     // The appended section may hold anything and is cut off before the XML is parsed.
     let cut = find(&bytes, b"<AppendedData").unwrap_or(bytes.len());
