@@ -1,7 +1,7 @@
-//! The part of `hexfill info` about positions: vertices, corners and edges of a surface that bound what any mesh of it can reach.
+//! The part of a description about positions: vertices, corners and edges of a surface that bound what any mesh of it can reach.
 
-use hexfill::embed::{CornerLimit, EdgeLimit, VertexLimit, surface_limits};
-use hexfill::mesh::QuadSurface;
+use hexfill_embed::{CornerLimit, EdgeLimit, VertexLimit, surface_limits};
+use hexfill_mesh::QuadSurface;
 use serde::Serialize;
 
 /// Cells named, at most, of each kind.
@@ -23,10 +23,12 @@ const SLIT: f64 = 345.0;
 const NEEDLE: f64 = 15.0;
 
 /// Cells of one kind: how many, and the first, worst first.
-#[derive(Serialize)]
-struct Named<T> {
-    count: usize,
-    first: Vec<T>,
+#[derive(Clone, Debug, Serialize)]
+pub struct Named<T> {
+    /// How many.
+    pub count: usize,
+    /// The first ten.
+    pub first: Vec<T>,
 }
 
 impl<T: Copy> Named<T> {
@@ -45,30 +47,31 @@ impl<T: Copy> Named<T> {
 }
 
 /// What the positions allow.
-#[derive(Serialize)]
-pub(super) struct LimitsInfo {
+#[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
+pub struct LimitsInfo {
     /// No mesh of this surface has a larger worst scaled Jacobian, by the angles of its quads and edges.
-    any_mesh: f64,
+    pub any_mesh: f64,
     /// No mesh with one interior edge at every surface vertex has a larger one.
-    one_edge: f64,
+    pub one_edge: f64,
     /// Vertices at which no single direction sees all quads.
-    no_direction: Named<VertexLimit>,
+    pub no_direction: Named<VertexLimit>,
     /// Vertices whose best single direction is poor.
-    poor_direction: Named<VertexLimit>,
+    pub poor_direction: Named<VertexLimit>,
     /// Edges with a small dihedral angle.
-    sharp_edges: Named<EdgeLimit>,
+    pub sharp_edges: Named<EdgeLimit>,
     /// Edges whose outside nearly closes up.
-    slit_edges: Named<EdgeLimit>,
+    pub slit_edges: Named<EdgeLimit>,
     /// Corners of nearly 180 degrees.
-    flat_corners: Named<CornerLimit>,
+    pub flat_corners: Named<CornerLimit>,
     /// Corners of nearly 0 degrees, or at an edge of length 0.
-    needle_corners: Named<CornerLimit>,
+    pub needle_corners: Named<CornerLimit>,
     /// Corners above 180 degrees.
-    reflex_corners: Named<CornerLimit>,
+    pub reflex_corners: Named<CornerLimit>,
 }
 
 /// The limits of a surface; `None` if it has vertices without positions.
-pub(super) fn describe(surface: &QuadSurface, points: &[[f64; 3]]) -> Option<LimitsInfo> {
+pub(crate) fn describe(surface: &QuadSurface, points: &[[f64; 3]]) -> Option<LimitsInfo> {
     let limits = surface_limits(surface, points)?;
     let by_corners = limits.corners.first().map_or(1.0, |c| c.bound);
     let by_edges = limits.edges.iter().map(|e| e.bound).fold(1.0, f64::min);
@@ -91,7 +94,7 @@ pub(super) fn describe(surface: &QuadSurface, points: &[[f64; 3]]) -> Option<Lim
 
 impl LimitsInfo {
     /// A few lines for people.
-    pub(super) fn lines(&self) -> Vec<String> {
+    pub fn lines(&self) -> Vec<String> {
         let vertex = |v: &VertexLimit| format!("{} ({:.3})", v.vertex, v.bound + 0.0);
         let corner = |c: &CornerLimit| format!("{} at {} ({:.1} degrees)", c.vertex, c.quad, c.degrees);
         let edge = |e: &EdgeLimit| format!("{} ({:.1} degrees, {:.2} hexes)", e.edge, e.degrees, e.hexes);
