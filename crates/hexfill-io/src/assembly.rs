@@ -3,7 +3,10 @@
 //! It keeps faces in order, sorts cells by kind, hands the arrays given "per cell of the file" to those cells they
 //! belong to, counts what is passed over, and turns an array of zeros back into "no tags".
 
-use crate::data::{MeshData, OtherFace};
+use crate::arrays::component;
+use crate::data::{MeshData, OtherFace, TagName, TagOn};
+use crate::groups::{Combination, Groups, NONE};
+use rustc_hash::FxHashSet;
 use std::collections::BTreeMap;
 
 /// Where a cell of the file went.
@@ -46,15 +49,16 @@ impl Values {
             Self::Real(v) => v[i],
         }
     }
-
-    fn to_reals(&self) -> Vec<f64> {
-        (0..self.len()).map(|i| self.real(i)).collect()
-    }
 }
 
 /// Names under which tags are stored as a data array, our own first; the earlier one wins.
 const TAG_NAMES: [&str; 9] =
     ["tag", "tags", "gmsh:physical", "medit:ref", "CellEntityIds", "MaterialIds", "material", "label", "attribute"];
+
+/// The names of the components of an array: its own if there is one component.
+fn columns(name: &str, components: usize) -> impl Iterator<Item = (String, usize)> + '_ {
+    (0..components).map(move |k| (if components == 1 { name.to_owned() } else { component(name, k) }, k))
+}
 
 fn tag_rank(name: &str) -> Option<usize> {
     TAG_NAMES.iter().position(|n| n.eq_ignore_ascii_case(name))
@@ -156,30 +160,36 @@ impl Assembly {
         }
     }
 
-    /// Takes an array with one value per point: tags if its name says so, data otherwise.
-    pub(crate) fn point_array(&mut self, name: &str, values: &Values) {
+    /// Takes an array over the points with its values point by point: tags if its name says so, data otherwise.
+    pub(crate) fn point_array(&mut self, name: &str, components: usize, values: &Values) {
         let n = self.point_count();
-        if values.len() != n {
-            self.note(format!("point array `{name}` has {} values for {n} points: not kept", values.len()));
+        if components == 0 || values.len() != n.saturating_mul(components) {
+            let given = values.len();
+            self.note(format!("point array `{name}` has {given} values for {n} points: not kept"));
             return;
         }
-        if let (Some(rank), Some(tags)) = (tag_rank(name), values.as_tags())
+        if components == 1
+            && let (Some(rank), Some(tags)) = (tag_rank(name), values.as_tags())
             && self.point_rank.is_none_or(|r| rank < r)
         {
             self.point_rank = Some(rank);
             self.point_tags = tags;
             return;
         }
-        self.mesh.point_data.push((name.to_owned(), values.to_reals()));
+        for (name, k) in columns(name, components) {
+            self.mesh.point_data.push((name, (0..n).map(|i| values.real(i * components + k)).collect()));
+        }
     }
 
-    /// Takes an array with one value per cell of the file, whose places are `slots`.
-    pub(crate) fn cell_array(&mut self, name: &str, values: &Values, slots: &[Slot]) {
-        if values.len() != slots.len() {
-            self.note(format!("cell array `{name}` has {} values for {} cells: not kept", values.len(), slots.len()));
+    /// Takes an array over the cells of the file, whose places are `slots`.
+    pub(crate) fn cell_array(&mut self, name: &str, components: usize, values: &Values, slots: &[Slot]) {
+        if components == 0 || values.len() != slots.len().saturating_mul(components) {
+            let (given, n) = (values.len(), slots.len());
+            self.note(format!("cell array `{name}` has {given} values for {n} cells: not kept"));
             return;
         }
-        if let (Some(rank), Some(tags)) = (tag_rank(name), values.as_tags())
+        if components == 1
+            && let (Some(rank), Some(tags)) = (tag_rank(name), values.as_tags())
             && self.cell_rank.is_none_or(|r| rank < r)
         {
             self.cell_rank = Some(rank);
@@ -191,22 +201,81 @@ impl Assembly {
             }
             return;
         }
-        if self.mesh.hexes.is_empty() {
-            self.note(format!("cell array `{name}` is not kept: there are no hexes"));
-            return;
-        }
-        let mut data = vec![f64::NAN; self.mesh.hexes.len()];
+        let mut on_quads = vec![f64::NAN; self.mesh.quads.len() * components];
+        let mut on_hexes = vec![f64::NAN; self.mesh.hexes.len() * components];
+        let mut elsewhere = 0u64;
         for (i, &slot) in slots.iter().enumerate() {
-            if let Slot::Hex(h) = slot {
-                data[h as usize] = values.real(i);
+            let from = i * components;
+            let to = match slot {
+                Slot::Quad(q) => &mut on_quads[q as usize * components..][..components],
+                Slot::Hex(h) => &mut on_hexes[h as usize * components..][..components],
+                Slot::OtherFace(_) | Slot::Elsewhere => {
+                    elsewhere += u64::from((0..components).any(|k| !values.real(from + k).is_nan()));
+                    continue;
+                }
+            };
+            to.iter_mut().enumerate().for_each(|(k, x)| *x = values.real(from + k));
+        }
+        if elsewhere > 0 {
+            self.note(format!(
+                "cell array `{name}`: values on {elsewhere} cells other than quads and hexes are not kept"
+            ));
+        }
+        // An array over hexes alone fills the quads with NaN, and the other way round.
+        let filled = |v: &[f64]| v.iter().any(|x| !x.is_nan());
+        let (quads, hexes) = slots.iter().fold((false, false), |(quads, hexes), slot| {
+            (quads || matches!(slot, Slot::Quad(_)), hexes || matches!(slot, Slot::Hex(_)))
+        });
+        let quads_too = filled(&on_quads) || (quads && !hexes);
+        let hexes_too = filled(&on_hexes) || (hexes && !quads_too);
+        let column = |v: &[f64], k: usize| v.iter().skip(k).step_by(components).copied().collect();
+        for (name, k) in columns(name, components) {
+            if quads_too {
+                self.mesh.quad_data.push((name.clone(), column(&on_quads, k)));
+            }
+            if hexes_too {
+                self.mesh.hex_data.push((name, column(&on_hexes, k)));
             }
         }
-        self.mesh.hex_data.push((name.to_owned(), data));
+    }
+
+    /// The mesh has names for some of its tags.
+    pub(crate) fn name_tags(&mut self, names: impl Iterator<Item = TagName>) {
+        self.mesh.tag_names.extend(names);
+    }
+
+    /// An array of the file as a whole: names of tags if it is pairs of a tag and a dimension, otherwise passed over.
+    pub(crate) fn field(&mut self, name: &str, components: usize, values: &Values) {
+        let Values::Whole(values) = values else { return };
+        let named =
+            |row: &[i64]| Some(TagName { on: TagOn::from_dimension(row[1])?, tag: row[0], name: name.to_owned() });
+        let pairs = components == 2 || (components == 1 && values.len() == 2);
+        if pairs && values.len().is_multiple_of(2) {
+            let names: Option<Vec<TagName>> = values.chunks_exact(2).map(named).collect();
+            self.name_tags(names.unwrap_or_default().into_iter());
+        }
+    }
+
+    /// Faces and cells have the tags of their combinations of groups, with the names of those.
+    pub(crate) fn tag_by_groups(&mut self, slots: &[Slot], combinations: &[Combination], groups: &Groups) {
+        let placed = || slots.iter().copied().zip(combinations.iter().copied()).filter(|(s, _)| *s != Slot::Elsewhere);
+        let tags = groups.tags(placed().map(|(_, c)| c));
+        let mut on = [FxHashSet::default(), FxHashSet::default()];
+        for (slot, combination) in placed().filter(|(_, c)| *c != NONE) {
+            self.set_tag(slot, tags.of(combination));
+            on[usize::from(matches!(slot, Slot::Hex(_)))].insert(tags.of(combination));
+        }
+        for (kind, used) in [TagOn::Faces, TagOn::Cells].into_iter().zip(&on) {
+            self.name_tags(tags.names(kind).filter(|n| used.contains(&n.tag)));
+        }
     }
 
     /// The finished mesh.
     pub(crate) fn finish(mut self) -> MeshData {
         let some = |tags: Vec<i64>, n: usize| (tags.len() == n && tags.iter().any(|&t| t != 0)).then_some(tags);
+        self.mesh.tag_names.retain(|n| n.tag != 0);
+        self.mesh.tag_names.sort_by_key(|n| (n.on, n.tag));
+        self.mesh.tag_names.dedup();
         self.mesh.point_tags = some(self.point_tags, self.mesh.points.len());
         self.mesh.quad_tags = some(self.quad_tags, self.mesh.quads.len());
         self.mesh.hex_tags = some(self.hex_tags, self.mesh.hexes.len());

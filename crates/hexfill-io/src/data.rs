@@ -19,6 +19,66 @@ pub struct OtherFace {
     pub tag: i64,
 }
 
+/// What a tag with a name is on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum TagOn {
+    /// Points (node sets).
+    Points,
+    /// Faces (boundary conditions).
+    Faces,
+    /// Cells (materials).
+    Cells,
+}
+
+/// A name of a tag: of a physical group of Gmsh, a set of Abaqus, a group, object or material of OBJ.
+///
+/// Groups may overlap, so a tag can have several names (it stands for what is in all of them), and a name several tags.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct TagName {
+    /// Whose tags.
+    pub on: TagOn,
+    /// The tag, not 0.
+    pub tag: i64,
+    /// The name, as in the file.
+    pub name: String,
+}
+
+impl TagOn {
+    /// The dimension of what the tag is on, as Gmsh counts.
+    pub(crate) fn dimension(self) -> i64 {
+        [0, 2, 3][self as usize]
+    }
+
+    pub(crate) fn from_dimension(dimension: i64) -> Option<Self> {
+        [Self::Points, Self::Faces, Self::Cells].into_iter().find(|on| on.dimension() == dimension)
+    }
+}
+
+/// How the comments begin that hold names of tags in formats without a place for them.
+const NAME_LINE: &str = "hexfill: tag of";
+
+impl TagName {
+    /// The name as the text of a comment.
+    pub(crate) fn line(&self) -> String {
+        let on = ["points", "faces", "cells"][self.on as usize];
+        let name: String = self.name.chars().map(|c| if c.is_control() { '_' } else { c }).collect();
+        format!("{NAME_LINE} {on} {} {name}", self.tag)
+    }
+
+    /// Reads the text of a comment, if it is such a one.
+    pub(crate) fn from_line(text: &str) -> Option<Self> {
+        let (on, rest) = text.trim().strip_prefix(NAME_LINE)?.trim_start().split_once(' ')?;
+        let (tag, name) = rest.split_once(' ')?;
+        let on = match on {
+            "points" => TagOn::Points,
+            "faces" => TagOn::Faces,
+            "cells" => TagOn::Cells,
+            _ => return None,
+        };
+        Some(Self { on, tag: tag.parse().ok()?, name: name.to_owned() })
+    }
+}
+
 /// A surface, a mesh, or both, as a file holds it. All indices are 0-based.
 ///
 /// A tag is a number a user gave to a point, face or cell (boundary condition, material; the "reference" of MEDIT, the
@@ -45,8 +105,13 @@ pub struct MeshData {
     pub quad_tags: Option<Vec<i64>>,
     /// One tag per hex.
     pub hex_tags: Option<Vec<i64>>,
-    /// Named numbers, one per point. NaN means "no value".
+    /// Names of tags, in order of what they are on, then of the tags.
+    pub tag_names: Vec<TagName>,
+    /// Named numbers, one per point. NaN means "no value". Arrays `name:0`, `name:1`, ... that stand side by side are the
+    /// components of one array of the file (a vector); so in all data.
     pub point_data: Vec<(String, Vec<f64>)>,
+    /// Named numbers, one per quad. NaN means "no value".
+    pub quad_data: Vec<(String, Vec<f64>)>,
     /// Named numbers, one per hex (qualities). NaN means "no value".
     pub hex_data: Vec<(String, Vec<f64>)>,
     /// False if the file has connectivity only.
@@ -68,7 +133,9 @@ impl Default for MeshData {
             point_tags: None,
             quad_tags: None,
             hex_tags: None,
+            tag_names: Vec::new(),
             point_data: Vec::new(),
+            quad_data: Vec::new(),
             hex_data: Vec::new(),
             has_coordinates: true,
             notes: Vec::new(),
@@ -103,7 +170,12 @@ impl MeshData {
     }
 
     /// All faces with their tags (0 for none), in the order of the file.
-    pub(crate) fn tagged_faces(&self) -> impl Iterator<Item = (&[u32], i64)> {
+    pub(crate) fn tagged_faces(&self) -> impl Iterator<Item = (&[u32], i64)> + Clone {
+        self.numbered_faces().map(|(_, face, tag)| (face, tag))
+    }
+
+    /// The same with the index of each face that is a quad among the quads.
+    pub(crate) fn numbered_faces(&self) -> impl Iterator<Item = (Option<usize>, &[u32], i64)> + Clone {
         let (mut position, mut quad, mut other) = (0, 0, 0);
         std::iter::from_fn(move || {
             // Positions that leave gaps (a hand-made MeshData) do no harm: the other faces then come last.
@@ -111,10 +183,10 @@ impl MeshData {
             let item = match next {
                 Some(face) if face.position <= position || quad >= self.quads.len() => {
                     other += 1;
-                    Some((face.vertices.as_slice(), face.tag))
+                    Some((None, face.vertices.as_slice(), face.tag))
                 }
                 _ => {
-                    let item = self.quads.get(quad).map(|q| (q.as_slice(), self.quad_tag(quad)));
+                    let item = self.quads.get(quad).map(|q| (Some(quad), q.as_slice(), self.quad_tag(quad)));
                     quad += 1;
                     item
                 }
@@ -161,6 +233,7 @@ impl MeshData {
             pyramids: Vec::new(),
             hex_tags: None,
             hex_data: Vec::new(),
+            tag_names: self.tag_names.iter().filter(|n| n.on != TagOn::Cells).cloned().collect(),
             ..self.clone()
         }
     }
@@ -175,9 +248,30 @@ impl MeshData {
         };
         lost(self.point_tags.is_some() && !format.holds_point_tags(), "tags of points");
         lost(self.quad_tags.is_some() && !format.holds_cell_tags(), "tags of quads");
+        lost(self.names_lost(format), "names of tags");
         lost(!self.point_data.is_empty() && !format.holds_data(), "data on points");
+        lost(!self.quad_data.is_empty() && !format.holds_data(), "data on quads");
         lost(!self.hex_data.is_empty() && !format.holds_data(), "data on hexes");
         losses
+    }
+
+    /// Each name of a tag with all it stands for, as `[tag, dimension]`: how meshio and files of VTK keep the names of groups.
+    pub(crate) fn names_as_fields(&self) -> Vec<(&str, Vec<[i64; 2]>)> {
+        let mut fields: Vec<(&str, Vec<[i64; 2]>)> = Vec::new();
+        for name in &self.tag_names {
+            let row = [name.tag, name.on.dimension()];
+            match fields.iter_mut().find(|(n, _)| *n == name.name) {
+                Some((_, rows)) => rows.push(row),
+                None => fields.push((&name.name, vec![row])),
+            }
+        }
+        fields
+    }
+
+    /// Whether `format` has tags without a place for their names, or no tags.
+    fn names_lost(&self, format: Format) -> bool {
+        let held = |on| if on == TagOn::Points { format.holds_point_tags() } else { format.holds_cell_tags() };
+        self.tag_names.iter().any(|n| !held(n.on))
     }
 
     fn largest_index(&self) -> Option<u32> {
@@ -251,7 +345,9 @@ impl MeshData {
         let tags = arrays.into_iter().filter_map(|(name, given, due)| given.map(|g| (name.to_owned(), g, due)));
         let point_data = self.point_data.iter().map(|(name, v)| (format!("point data `{name}`"), v.len(), n));
         let hex_data = self.hex_data.iter().map(|(name, v)| (format!("hex data `{name}`"), v.len(), self.hexes.len()));
-        for (name, given, due) in tags.chain(point_data).chain(hex_data) {
+        let quad_data =
+            self.quad_data.iter().map(|(name, v)| (format!("quad data `{name}`"), v.len(), self.quads.len()));
+        for (name, given, due) in tags.chain(point_data).chain(quad_data).chain(hex_data) {
             if given != due {
                 return Err(WriteError::Inconsistent { what: format!("{name} has {given} values instead of {due}") });
             }

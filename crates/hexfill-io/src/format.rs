@@ -201,9 +201,9 @@ impl Format {
         !matches!(self, Self::Obj | Self::Off)
     }
 
-    /// Whether named numbers on points and hexes are kept.
+    /// Whether named numbers on points, quads and hexes are kept.
     pub fn holds_data(self) -> bool {
-        matches!(self, Self::Vtk | Self::Vtu | Self::Msh22 | Self::Msh41)
+        !matches!(self, Self::Obj | Self::Off | Self::Medit | Self::Inp)
     }
 
     /// Whether the format has a binary flavour that is written here.

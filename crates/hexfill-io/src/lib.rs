@@ -18,19 +18,20 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod arrays;
 mod assembly;
 mod compress;
 mod data;
 mod error;
 mod format;
 mod formats;
-mod names;
+mod groups;
 pub mod orders;
 mod save;
 mod source;
 mod write;
 
-pub use data::{MeshData, OtherFace};
+pub use data::{MeshData, OtherFace, TagName, TagOn};
 pub use error::{Place, Position, ReadError, WriteError};
 pub use format::{Compression, Format, FormatError};
 pub use save::{Encoding, check_path, write_path, write_path_with, write_to, write_to_with};

@@ -19,6 +19,10 @@ pub const OVM_ADD_CELL: [usize; 8] = [0, 3, 2, 1, 4, 5, 6, 7];
 pub const OVM_HALF_FACES: [[usize; 4]; 6] =
     [[0, 1, 2, 3], [7, 6, 5, 4], [3, 2, 6, 7], [4, 5, 1, 0], [3, 7, 4, 0], [2, 1, 5, 6]];
 
+/// The faces S1 to S6 of C3D8 in Abaqus and CalculiX, here counter-clockwise seen from outside.
+pub const ABAQUS_FACES: [[usize; 4]; 6] =
+    [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
+
 /// Puts the nodes of one order into the other (`PIXEL`, `VOXEL`, `OVM_ADD_CELL`: either way).
 #[inline]
 pub fn reorder<const N: usize>(nodes: [u32; N], table: [usize; N]) -> [u32; N] {
@@ -42,6 +46,14 @@ mod tests {
     fn voxel_counts_in_binary() {
         for (i, &corner) in VOXEL.iter().enumerate() {
             assert_eq!(POSITIONS[corner].map(usize::from), [i & 1, i >> 1 & 1, i >> 2]);
+        }
+    }
+
+    #[test]
+    fn abaqus_faces_are_the_facets() {
+        for face in ABAQUS_FACES {
+            let turns = |f: &[usize; 4]| (0..4).any(|r| (0..4).all(|k| f[(k + r) % 4] == face[k]));
+            assert!(FACETS.iter().any(turns), "{face:?}");
         }
     }
 

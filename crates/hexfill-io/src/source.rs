@@ -3,6 +3,7 @@
 //! One line at a time is in memory. Counts claimed by a file are never trusted: vectors are reserved for at most
 //! [`RESERVE`] items and grow with what really arrives, and binary blocks are read through a limit.
 
+use crate::data::TagName;
 use crate::error::{Place, Position, ReadError, snippet};
 use crate::format::Format;
 use std::fmt::Display;
@@ -36,6 +37,8 @@ pub(crate) struct Source<'r> {
     binary: bool,
     /// The current line is to be read once more.
     again: bool,
+    /// Names of tags in comments of this program.
+    tag_names: Vec<TagName>,
 }
 
 impl<'r> Source<'r> {
@@ -52,6 +55,7 @@ impl<'r> Source<'r> {
             comma: false,
             binary: false,
             again: false,
+            tag_names: Vec::new(),
         }
     }
 
@@ -113,6 +117,11 @@ impl<'r> Source<'r> {
         }
         if self.number == 1 && self.line.starts_with(b"\xef\xbb\xbf") {
             self.cursor = 3; // a byte order mark
+        }
+        if let (Some(comment), Some((first, text))) = (self.comment, self.line.split_first())
+            && *first == comment
+        {
+            self.tag_names.extend(std::str::from_utf8(text).ok().and_then(TagName::from_line));
         }
         Ok(true)
     }
@@ -399,6 +408,11 @@ impl<'r> Source<'r> {
         self.reader.read_to_end(&mut all).map_err(|e| self.io_error(e))?;
         self.consumed += all.len() as u64;
         Ok(all)
+    }
+
+    /// The names of tags that comments held so far.
+    pub(crate) fn take_tag_names(&mut self) -> Vec<TagName> {
+        std::mem::take(&mut self.tag_names)
     }
 
     /// Skips white space; the number of lines skipped, or `None` if nothing else is left.

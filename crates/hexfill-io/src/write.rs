@@ -64,3 +64,35 @@ pub(crate) fn has_cell_tags(data: &MeshData) -> bool {
 pub(crate) fn unquoted(name: &str) -> String {
     name.chars().map(|c| if c.is_control() || c == '"' { '_' } else { c }).collect()
 }
+
+/// Names are one word: VTK writes %20 for a blank.
+pub(crate) fn encode_name(name: &str) -> String {
+    let mut word = String::new();
+    for &byte in name.as_bytes() {
+        match byte {
+            b'%' | b'"' | 0..=32 | 127.. => word.push_str(&format!("%{byte:02X}")),
+            _ => word.push(char::from(byte)),
+        }
+    }
+    if word.is_empty() { "unnamed".to_owned() } else { word }
+}
+
+/// Undoes the %20 of array names.
+pub(crate) fn decode_name(text: &[u8]) -> String {
+    let mut bytes = Vec::with_capacity(text.len());
+    let mut i = 0;
+    while i < text.len() {
+        let hex = text.get(i + 1..i + 3).and_then(|h| std::str::from_utf8(h).ok());
+        match hex.filter(|_| text[i] == b'%').and_then(|h| u8::from_str_radix(h, 16).ok()) {
+            Some(byte) => {
+                bytes.push(byte);
+                i += 3;
+            }
+            None => {
+                bytes.push(text[i]);
+                i += 1;
+            }
+        }
+    }
+    String::from_utf8_lossy(&bytes).into_owned()
+}

@@ -6,7 +6,7 @@
 
 mod common;
 
-use hexfill_io::{Encoding, Format, MeshData, write_path_with};
+use hexfill_io::{Encoding, Format, write_path_with};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -53,15 +53,7 @@ fn write_all(directory: &Path) {
             if encoding == Encoding::Binary && !format.has_binary() {
                 continue;
             }
-            let mut mesh = common::chiral_for(format);
-            if matches!(format, Format::Msh22 | Format::Msh41) {
-                // meshio 5.3.5 splits element data by the wrong lengths when there are several kinds of elements
-                // (a block counts as its two members), so data are tested on hexes alone.
-                let only_hexes = MeshData { quads: Vec::new(), quad_tags: None, ..mesh.clone() };
-                let path = directory.join(format!("{format}-hexes.msh"));
-                write_path_with(&path, Some(format), &only_hexes, encoding).unwrap();
-                mesh.hex_data.clear();
-            }
+            let mesh = common::chiral_for(format);
             let binary = if encoding == Encoding::Binary { "-binary" } else { "" };
             let extension = if format == Format::Msh41 { "msh" } else { format.extensions()[0] };
             let path = directory.join(format!("{format}{binary}.{extension}"));
@@ -69,6 +61,14 @@ fn write_all(directory: &Path) {
             // The surface alone, which is what most files will be.
             let path = directory.join(format!("{format}{binary}-surface.{extension}"));
             write_path_with(&path, Some(format), &mesh.surface_only(), encoding).unwrap();
+            // With names; and with tags on some faces only, as a filled surface has them.
+            let path = directory.join(format!("named-{format}{binary}.{extension}"));
+            write_path_with(&path, Some(format), &common::named_for(format), encoding).unwrap();
+            let mut partly = mesh.clone();
+            partly.hex_tags = None;
+            partly.quad_tags.iter_mut().flatten().filter(|t| **t == 1).for_each(|t| *t = 0);
+            let path = directory.join(format!("partly-{format}{binary}.{extension}"));
+            write_path_with(&path, Some(format), &partly, encoding).unwrap();
         }
     }
 }

@@ -271,7 +271,13 @@ fn obj_in_all_its_forms() {
     let groups = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\ng inlet\nf 1 2 3 4\ng tag_1\nf 1 2 3 4\ng outlet wall\nf 1 2 3 4\ng\nf 1 2 3 4\n";
     let mesh = read_from(groups.as_bytes(), Format::Obj, "o").unwrap();
     assert_eq!(mesh.quad_tags, Some(vec![2, 1, 3, 0]));
-    assert_eq!(mesh.notes, ["group `inlet` is tag 2", "group `outlet wall` is tag 3"]);
+    let names: Vec<(i64, &str)> = mesh.tag_names.iter().map(|n| (n.tag, n.name.as_str())).collect();
+    assert_eq!(names, [(2, "inlet"), (3, "outlet"), (3, "wall")]);
+    let objects =
+        "o a box\nusemtl red\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\nusemtl None\ng default\nf 1 2 3 4\n";
+    let mesh = read_from(objects.as_bytes(), Format::Obj, "o").unwrap();
+    let names: Vec<(i64, &str)> = mesh.tag_names.iter().map(|n| (n.tag, n.name.as_str())).collect();
+    assert_eq!((mesh.quad_tags, names), (Some(vec![2, 1]), vec![(1, "a box"), (2, "a box"), (2, "red")]));
 }
 
 #[test]

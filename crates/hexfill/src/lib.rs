@@ -16,6 +16,8 @@ pub mod catalog;
 mod choose;
 mod components;
 mod describe;
+mod doctor;
+mod effort;
 mod fill;
 mod geometry;
 mod last_resort;
@@ -25,10 +27,13 @@ mod placed_fill;
 mod placement;
 mod problem;
 mod simplify;
+mod stored;
 mod threads;
 
 pub use choose::Prefer;
 pub use describe::{ChordInfo, MeshInfo, PartInfo, SheetInfo, SurfaceInfo, describe_mesh, describe_surface};
+pub use doctor::{Cure, CureOptions, Diagnosis, crossing_quads, cure, doctor};
+pub use effort::Effort;
 pub use fill::{
     FillError, FillOptions, FillReport, FillResult, Filled, InteriorFrom, Route, Strategy, check_fillable, fill,
     mesh_data,
@@ -43,6 +48,7 @@ pub use problem::{Problem, ProblemError, is_named};
 pub use simplify::{SimplifiedData, SimplifyError, default_balls, simplify};
 pub use threads::{MAX_THREADS, ThreadsError, with_threads};
 pub use {
-    hexfill_check as check, hexfill_construct as construct, hexfill_embed as embed, hexfill_enumerate as enumerate,
-    hexfill_io as io, hexfill_mesh as mesh, hexfill_search as search, hexfill_shell as shell, hexfill_view as view,
+    hexfill_check as check, hexfill_construct as construct, hexfill_doctor as diagnosis, hexfill_embed as embed,
+    hexfill_enumerate as enumerate, hexfill_io as io, hexfill_mesh as mesh, hexfill_search as search,
+    hexfill_shell as shell, hexfill_view as view,
 };

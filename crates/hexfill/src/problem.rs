@@ -3,7 +3,7 @@
 use crate::catalog;
 use crate::components::depths;
 use hexfill_geometry::{cone, sub};
-use hexfill_io::{Format, MeshData, ReadError};
+use hexfill_io::{Format, MeshData, ReadError, TagName, TagOn};
 use hexfill_mesh::{Offenders, QuadSurface, SignatureError, SurfaceError, parse_surface_signature};
 use std::path::Path;
 
@@ -20,6 +20,12 @@ pub struct Problem {
     pub point_tags: Option<Vec<i64>>,
     /// One tag per quad, as in the file.
     pub quad_tags: Option<Vec<i64>>,
+    /// Names of these tags.
+    pub tag_names: Vec<TagName>,
+    /// Named numbers per vertex, as in the file.
+    pub point_data: Vec<(String, Vec<f64>)>,
+    /// Named numbers per quad, as in the file.
+    pub quad_data: Vec<(String, Vec<f64>)>,
     /// What was recognised, repaired or passed over, for the user.
     pub notes: Vec<String>,
 }
@@ -96,7 +102,17 @@ impl Problem {
 
     /// A problem without positions.
     pub fn from_surface(name: &str, surface: QuadSurface) -> Self {
-        Self { name: name.to_owned(), surface, points: None, point_tags: None, quad_tags: None, notes: Vec::new() }
+        Self {
+            name: name.to_owned(),
+            surface,
+            points: None,
+            point_tags: None,
+            quad_tags: None,
+            tag_names: Vec::new(),
+            point_data: Vec::new(),
+            quad_data: Vec::new(),
+            notes: Vec::new(),
+        }
     }
 
     /// A problem from what a file holds: its faces, which must be quads and close up.
@@ -161,6 +177,9 @@ impl Problem {
             points,
             point_tags: data.point_tags.clone(),
             quad_tags: data.quad_tags.clone(),
+            tag_names: data.tag_names.iter().filter(|n| n.on != TagOn::Cells).cloned().collect(),
+            point_data: data.point_data.clone(),
+            quad_data: data.quad_data.clone(),
             notes,
         })
     }
@@ -172,6 +191,9 @@ impl Problem {
         data.has_coordinates = self.points.is_some();
         data.point_tags.clone_from(&self.point_tags);
         data.quad_tags.clone_from(&self.quad_tags);
+        data.tag_names.clone_from(&self.tag_names);
+        data.point_data.clone_from(&self.point_data);
+        data.quad_data.clone_from(&self.quad_data);
         data
     }
 }

@@ -3,7 +3,7 @@
 use crate::fill::FillOptions;
 use hexfill_check::{Judged, Level, Parts, judge};
 use hexfill_construct::CellChoice;
-use hexfill_io::MeshData;
+use hexfill_io::{MeshData, TagOn};
 use hexfill_mesh::{Context, HexMesh, HexMeshError, VertexId};
 use hexfill_search::{
     Atlas, Simplified, SimplifyOptions, SimplifyReport, collapse, simplification_atlas, simplify as simplify_mesh,
@@ -34,8 +34,8 @@ pub enum SimplifyError {
 /// A mesh as file data after [`simplify`].
 #[derive(Clone, Debug)]
 pub struct SimplifiedData {
-    /// The mesh. Points of the input that are still used keep their order, position and tag; new ones lie at the mean of
-    /// their neighbours and have tag 0. The faces of the file stay, in their order and with their tags.
+    /// The mesh. Points of the input that are still used keep their order, position, tag and data; new ones lie at the mean of
+    /// their neighbours and have tag 0 and no data. The faces of the file stay, in their order, with their tags and data.
     pub data: MeshData,
     /// Per point: the point of the input it was, or `None`.
     pub origin: Vec<Option<VertexId>>,
@@ -81,14 +81,25 @@ pub fn simplify(
     let stays = |face: &[u32]| face.iter().all(|&v| number[v as usize] != u32::MAX);
     let kept: Vec<usize> = (0..data.quads.len()).filter(|&q| stays(&data.quads[q])).collect();
     out.quads = kept.iter().map(|&q| data.quads[q].map(|v| number[v as usize])).collect();
+    let on_kept = |values: &Vec<f64>| kept.iter().map(|&q| values[q]).collect();
+    out.quad_data = data.quad_data.iter().map(|(name, values)| (name.clone(), on_kept(values))).collect();
     out.quad_tags = data.quad_tags.as_ref().map(|tags| kept.iter().map(|&q| tags[q]).collect());
     if kept.len() < data.quads.len() {
         out.notes.push(format!("{} faces inside the mesh are gone with their points", data.quads.len() - kept.len()));
     }
-    if data.hex_tags.is_some() || !data.hex_data.is_empty() || !data.point_data.is_empty() {
-        out.notes.push("tags and data of hexes and data of points are dropped: the hexes are others now".to_owned());
+    // Exchanged hexes belong to the material of those they stand for only if there is one.
+    let material = data.hex_tags.as_ref().map(|tags| (tags[0], tags.iter().all(|&t| t == tags[0])));
+    out.hex_tags = material.filter(|&(_, single)| single).map(|(tag, _)| vec![tag; out.hexes.len()]);
+    if material.is_some_and(|(_, single)| !single) {
+        out.tag_names.retain(|n| n.on != TagOn::Cells);
     }
-    (out.hex_tags, out.hex_data, out.point_data) = (None, Vec::new(), Vec::new());
+    if !data.hex_data.is_empty() || out.hex_tags.is_none() && data.hex_tags.is_some() {
+        out.notes
+            .push("data of hexes and their tags, if they differ, are dropped: the hexes are others now".to_owned());
+    }
+    out.hex_data = Vec::new();
+    let at = |values: &Vec<f64>| made.origin.iter().map(|o| o.map_or(f64::NAN, |v| values[v.index()])).collect();
+    out.point_data = data.point_data.iter().map(|(name, values)| (name.clone(), at(values))).collect();
     let tag = |tags: &Vec<i64>| made.origin.iter().map(|o| o.map_or(0, |v| tags[v.index()])).collect();
     out.point_tags = data.point_tags.as_ref().map(tag);
     if data.has_coordinates {

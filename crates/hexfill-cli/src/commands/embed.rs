@@ -65,6 +65,7 @@ pub fn run(args: &EmbedArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Re
     for note in std::mem::take(&mut data.notes) {
         console.note(note);
     }
+    files::check_mesh_output(&args.output, args.to, &data)?;
     if data.hexes.is_empty() {
         bail!("{} has no hexes; give a hex mesh (`hexfill fill` makes one from a surface)", args.mesh);
     }

@@ -1,16 +1,24 @@
-//! Abaqus and CalculiX input: `*NODE`, `*ELEMENT`, `*ELSET` and `*NSET`; everything else is passed over.
+//! Abaqus and CalculiX input: `*NODE`, `*ELEMENT`, `*ELSET`, `*NSET` and `*SURFACE`; everything else is passed over.
 //!
-//! Hexes are `C3D8`, quads are `S4`. Tags are element sets `TAG_n` (see `names`); the set on the `*ELEMENT` line comes first,
-//! then `*ELSET` lists in their order. Tags of points are node sets `TAG_n`; node sets with other names are passed over.
+//! Hexes are `C3D8`. Quads on hexes are faces S1 to S6 of these in surfaces, the first of which, `BOUNDARY`, has all of them in
+//! their order; a shell there would carry load. Other quads are shells `S4`. Sets and surfaces are tags (see `groups`), those of
+//! tags without a name are called `TAG_n`.
 
 use crate::assembly::{Assembly, Slot};
-use crate::data::MeshData;
+use crate::data::{MeshData, TagOn};
 use crate::error::{ReadError, snippet};
 use crate::formats::msh::Numbers;
-use crate::names::{Names, name_of};
+use crate::groups::{Combination, Groups, NONE};
+use crate::orders::ABAQUS_FACES;
 use crate::source::{Source, parse_integer};
-use crate::write::write_point;
-use std::io::{self, Write};
+use rustc_hash::FxHashMap;
+
+mod write;
+
+pub(crate) use write::write;
+
+/// The surface of all quads on hexes; not a name of a tag.
+const BOUNDARY: &str = "BOUNDARY";
 
 /// What element types are kept, and with how many nodes.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -51,9 +59,29 @@ fn kind_of(element_type: &str) -> Kind {
 enum Block {
     Nothing,
     Nodes,
-    Elements { kind: Kind, name: String, set: Option<usize> },
-    ElementSet { set: usize, generate: bool },
-    NodeSet { tag: i64, generate: bool },
+    Elements {
+        kind: Kind,
+        name: String,
+        set: Option<u32>,
+    },
+    ElementSet {
+        set: u32,
+        generate: bool,
+    },
+    NodeSet {
+        set: u32,
+        generate: bool,
+    },
+    /// Faces of elements; `None` is the surface of all quads.
+    Surface {
+        set: Option<u32>,
+    },
+}
+
+/// A line of a surface: faces of one element, or of those in a set.
+enum Side {
+    Element(i64),
+    Set(u32),
 }
 
 struct Reader<'r> {
@@ -62,9 +90,16 @@ struct Reader<'r> {
     nodes: Numbers,
     elements: Numbers,
     slots: Vec<Slot>,
-    /// Per element: stand-in of its set + 1.
-    sets: Vec<usize>,
-    names: Names,
+    /// Element sets and surfaces; the sets of each element.
+    sets: Groups,
+    of_element: Vec<Combination>,
+    /// Node sets; those of each node.
+    node_sets: Groups,
+    of_node: Vec<Combination>,
+    /// Names of sets in capitals, and as they were written first.
+    spellings: FxHashMap<String, String>,
+    /// Lines of surfaces: the surface, whose faces, and the number of the face.
+    sides: Vec<(Option<u32>, Side, usize)>,
 }
 
 pub(crate) fn read(source: Source<'_>) -> Result<MeshData, ReadError> {
@@ -74,8 +109,12 @@ pub(crate) fn read(source: Source<'_>) -> Result<MeshData, ReadError> {
         nodes: Numbers::default(),
         elements: Numbers::default(),
         slots: Vec::new(),
-        sets: Vec::new(),
-        names: Names::default(),
+        sets: Groups::default(),
+        of_element: Vec::new(),
+        node_sets: Groups::default(),
+        of_node: Vec::new(),
+        spellings: FxHashMap::default(),
+        sides: Vec::new(),
     };
     let mut block = Block::Nothing;
     let mut any = false;
@@ -108,23 +147,15 @@ pub(crate) fn read(source: Source<'_>) -> Result<MeshData, ReadError> {
             Block::Elements { kind, name, set } => read_element(&mut r, *kind, name, *set)?,
             Block::ElementSet { set, generate } => {
                 let (set, generate) = (*set, *generate);
-                each_member(&mut r, generate, |r, number| {
-                    if let Some(element) = r.elements.get(number) {
-                        let slot = &mut r.sets[element as usize];
-                        if *slot == 0 {
-                            *slot = set + 1;
-                        }
-                    }
-                })?;
+                read_members(&mut r, set, generate, true)?;
             }
-            Block::NodeSet { tag, generate } => {
-                let (tag, generate) = (*tag, *generate);
-                each_member(&mut r, generate, |r, number| {
-                    if let Some(node) = r.nodes.get(number) {
-                        r.out.point_tags.resize(r.out.mesh.points.len(), 0);
-                        r.out.point_tags[node as usize] = tag;
-                    }
-                })?;
+            Block::NodeSet { set, generate } => {
+                let (set, generate) = (*set, *generate);
+                read_members(&mut r, set, generate, false)?;
+            }
+            Block::Surface { set } => {
+                let set = *set;
+                read_side(&mut r, set)?;
             }
         }
     }
@@ -191,25 +222,41 @@ fn open_block(r: &mut Reader<'_>, text: &str, parts: &mut u32) -> Result<Block, 
                 return Err(r.s.malformed_text("`TYPE=` of the elements", given, "add it, as in *ELEMENT, TYPE=C3D8"));
             };
             let name = name.to_ascii_uppercase();
-            let set = get("ELSET").map(|set| r.names.stand_in(&set.to_ascii_uppercase()));
+            let set = get("ELSET").map(|set| r.element_set(set));
             Block::Elements { kind: kind_of(&name), name, set }
         }
         "*ELSET" => match get("ELSET") {
+            Some(name) => Block::ElementSet { set: r.element_set(name), generate: get("GENERATE").is_some() },
+            None => Block::Nothing,
+        },
+        "*NSET" => match get("NSET") {
             Some(name) => {
-                let set = r.names.stand_in(&name.to_ascii_uppercase());
-                Block::ElementSet { set, generate: get("GENERATE").is_some() }
+                let name = spelling(&mut r.spellings, name);
+                Block::NodeSet { set: r.node_sets.named(&name), generate: get("GENERATE").is_some() }
             }
             None => Block::Nothing,
         },
-        "*NSET" => {
-            let name = get("NSET").map(str::to_ascii_lowercase).unwrap_or_default();
-            match name.strip_prefix("tag_").and_then(|n| n.parse().ok()) {
-                Some(tag) => Block::NodeSet { tag, generate: get("GENERATE").is_some() },
-                None => Block::Nothing,
+        "*SURFACE" => match (get("NAME"), get("TYPE")) {
+            (Some(name), kind) if kind.is_none_or(|k| k.eq_ignore_ascii_case("ELEMENT")) => {
+                let all = name.eq_ignore_ascii_case(BOUNDARY);
+                Block::Surface { set: (!all).then(|| r.element_set(name)) }
             }
-        }
+            _ => Block::Nothing,
+        },
         _ => Block::Nothing,
     })
+}
+
+/// The name as it was written first: names differ by more than capitals.
+fn spelling(spellings: &mut FxHashMap<String, String>, name: &str) -> String {
+    spellings.entry(name.to_ascii_uppercase()).or_insert_with(|| name.to_owned()).clone()
+}
+
+impl Reader<'_> {
+    fn element_set(&mut self, name: &str) -> u32 {
+        let name = spelling(&mut self.spellings, name);
+        self.sets.named(&name)
+    }
 }
 
 fn read_node(r: &mut Reader<'_>) -> Result<(), ReadError> {
@@ -233,7 +280,7 @@ fn read_node(r: &mut Reader<'_>) -> Result<(), ReadError> {
     Ok(())
 }
 
-fn read_element(r: &mut Reader<'_>, kind: Kind, name: &str, set: Option<usize>) -> Result<(), ReadError> {
+fn read_element(r: &mut Reader<'_>, kind: Kind, name: &str, set: Option<u32>) -> Result<(), ReadError> {
     let span = r.s.need_word("an element number")?;
     let number = r.s.integer(span, "an element number")?;
     let n_nodes = match kind {
@@ -277,22 +324,28 @@ fn read_element(r: &mut Reader<'_>, kind: Kind, name: &str, set: Option<usize>) 
     };
     r.elements.push(number);
     r.slots.push(slot);
-    r.sets.push(set.map_or(0, |s| s + 1));
+    let of_element = set.map_or(NONE, |set| r.sets.join(NONE, set));
+    r.of_element.push(of_element);
     Ok(())
 }
 
-/// Calls `take` for each number on the line; names of other sets are passed over.
-fn each_member(
-    r: &mut Reader<'_>,
-    generate: bool,
-    mut take: impl FnMut(&mut Reader<'_>, i64),
-) -> Result<(), ReadError> {
+/// The members of an element set or node set on the line: numbers, or names of sets given before.
+fn read_members(r: &mut Reader<'_>, set: u32, generate: bool, elements: bool) -> Result<(), ReadError> {
     let mut range = Vec::new();
     while let Some(span) = r.s.word() {
         match parse_integer(r.s.text(span)) {
             Some(number) if generate => range.push(number),
-            Some(number) => take(r, number),
-            None => r.out.ignore("references to sets in sets"),
+            Some(number) => add_member(r, set, number, elements),
+            None => {
+                let name = spelling(&mut r.spellings, &String::from_utf8_lossy(r.s.text(span)));
+                let (sets, of) = r.sets_of(elements);
+                let other = sets.named(&name);
+                for member in of.iter_mut() {
+                    if sets.contains(*member, other) {
+                        *member = sets.join(*member, set);
+                    }
+                }
+            }
         }
     }
     if generate {
@@ -307,7 +360,7 @@ fn each_member(
         }
         let mut number = first;
         while number <= last {
-            take(r, number);
+            add_member(r, set, number, elements);
             let Some(next) = number.checked_add(step) else { break };
             number = next;
         }
@@ -315,76 +368,92 @@ fn each_member(
     Ok(())
 }
 
-fn finish(mut r: Reader<'_>) -> Result<MeshData, ReadError> {
-    r.out.point_tags.resize(r.out.mesh.points.len(), 0);
-    // A set counts if a face or hex is in it; if one nameless set holds everything it says nothing.
-    let mut used = vec![false; r.sets.iter().max().map_or(0, |&s| s)];
-    let mut kinds = [false; 2];
-    for (&slot, &set) in r.slots.iter().zip(&r.sets) {
-        if slot != Slot::Elsewhere {
-            kinds[usize::from(matches!(slot, Slot::Hex(_)))] = true;
-            if set > 0 {
-                used[set - 1] = true;
-            }
+impl Reader<'_> {
+    /// The sets of elements or of nodes, and which each is in.
+    fn sets_of(&mut self, elements: bool) -> (&mut Groups, &mut Vec<Combination>) {
+        if elements {
+            return (&mut self.sets, &mut self.of_element);
         }
+        self.of_node.resize(self.out.mesh.points.len(), NONE);
+        (&mut self.node_sets, &mut self.of_node)
     }
-    let (tags, notes) = r.names.tags(&used, "element set");
-    let sets_used = used.iter().filter(|&&u| u).count();
-    let nameless = notes.len() == sets_used;
-    let one_each = sets_used <= kinds.iter().filter(|&&k| k).count();
-    if !(nameless && one_each) {
-        for (&slot, &set) in r.slots.iter().zip(&r.sets) {
-            if set > 0 && slot != Slot::Elsewhere {
-                r.out.set_tag(slot, tags[set - 1]);
-            }
-        }
-        notes.into_iter().for_each(|n| r.out.note(n));
-    }
-    Ok(r.out.finish())
 }
 
-pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
-    writeln!(out, "*HEADING\nhexfill: {} hexes, {} faces", data.hexes.len(), data.face_count())?;
-    writeln!(out, "*NODE")?;
-    for (i, point) in data.points.iter().enumerate() {
-        write!(out, "{}, ", i + 1)?;
-        write_point(out, point, ", ")?;
-        out.write_all(b"\n")?;
+/// Numbers that nothing has are passed over.
+fn add_member(r: &mut Reader<'_>, set: u32, number: i64, elements: bool) {
+    let place = if elements { r.elements.get(number) } else { r.nodes.get(number) };
+    let (sets, of) = r.sets_of(elements);
+    if let Some(place) = place {
+        of[place as usize] = sets.join(of[place as usize], set);
     }
-    let faces = data.tagged_faces().map(|(f, tag)| (if f.len() == 3 { "S3" } else { "S4" }, f, tag));
-    let hexes = data.hexes.iter().enumerate().map(|(h, hex)| ("C3D8", hex.as_slice(), data.hex_tag(h)));
-    let tets = data.tets.iter().map(|c| ("C3D4", c.as_slice(), 0));
-    let wedges = data.wedges.iter().map(|c| ("C3D6", c.as_slice(), 0));
-    let pyramids = data.pyramids.iter().map(|c| ("C3D5", c.as_slice(), 0));
-    let mut block = None;
-    let mut tags = Vec::new();
-    for (i, (element_type, nodes, tag)) in faces.chain(hexes).chain(tets).chain(wedges).chain(pyramids).enumerate() {
-        if block != Some(element_type) {
-            block = Some(element_type);
-            writeln!(out, "*ELEMENT, TYPE={element_type}")?;
-        }
-        write!(out, "{}", i + 1)?;
-        for &node in nodes {
-            write!(out, ", {}", u64::from(node) + 1)?;
-        }
-        out.write_all(b"\n")?;
-        tags.push(tag);
-    }
-    // Each set once: meshio forgets all but the last part of a set that is spread over several blocks.
-    write_sets(out, "ELSET", &tags)?;
-    write_sets(out, "NSET", data.point_tags.as_deref().unwrap_or_default())
 }
 
-/// Lists of the members (counted from 1) of each tag but 0.
-fn write_sets(out: &mut dyn Write, keyword: &str, tags: &[i64]) -> io::Result<()> {
-    let mut sorted: Vec<(i64, usize)> = tags.iter().copied().zip(1..).filter(|&(tag, _)| tag != 0).collect();
-    sorted.sort_unstable();
-    for set in sorted.chunk_by(|a, b| a.0 == b.0) {
-        writeln!(out, "*{keyword}, {keyword}={}", name_of(set[0].0).to_ascii_uppercase())?;
-        for line in set.chunks(8) {
-            let numbers: Vec<String> = line.iter().map(|(_, i)| i.to_string()).collect();
-            writeln!(out, "{}", numbers.join(", "))?;
+/// A line of a surface: an element or a set, and one of its faces.
+fn read_side(r: &mut Reader<'_>, surface: Option<u32>) -> Result<(), ReadError> {
+    let span = r.s.need_word("an element or a set")?;
+    let whose = match parse_integer(r.s.text(span)) {
+        Some(number) => Side::Element(number),
+        None => {
+            let name = String::from_utf8_lossy(r.s.text(span)).into_owned();
+            Side::Set(r.element_set(&name))
         }
+    };
+    let side = r.s.word().map(|span| r.s.string(span).to_ascii_uppercase()).unwrap_or_default();
+    match side.strip_prefix('S').and_then(|n| n.parse::<usize>().ok()) {
+        Some(side @ 1..=6) => r.sides.push((surface, whose, side - 1)),
+        // Both sides of a shell are the shell.
+        _ if side == "SPOS" || side == "SNEG" => r.sides.push((surface, whose, 0)),
+        _ => r.out.ignore("lines of surfaces without a face S1 to S6"),
     }
     Ok(())
+}
+
+/// The faces of elements that surfaces name: faces of the file where there are such, new ones on hexes otherwise.
+fn place_sides(r: &mut Reader<'_>) {
+    let key = |mut quad: [u32; 4]| {
+        quad.sort_unstable();
+        quad
+    };
+    let mut known: FxHashMap<[u32; 4], usize> = FxHashMap::default();
+    if !r.sides.is_empty() {
+        let quads = r.slots.iter().enumerate().filter_map(|(e, slot)| match slot {
+            Slot::Quad(q) => Some((key(r.out.mesh.quads[*q as usize]), e)),
+            _ => None,
+        });
+        known.extend(quads);
+    }
+    let n_elements = r.slots.len();
+    for (surface, whose, side) in std::mem::take(&mut r.sides) {
+        let members: Vec<usize> = match whose {
+            Side::Element(number) => r.elements.get(number).map(|e| e as usize).into_iter().collect(),
+            Side::Set(set) => (0..n_elements).filter(|&e| r.sets.contains(r.of_element[e], set)).collect(),
+        };
+        for element in members {
+            let face = match r.slots[element] {
+                Slot::Hex(h) => {
+                    let quad = ABAQUS_FACES[side].map(|i| r.out.mesh.hexes[h as usize][i]);
+                    *known.entry(key(quad)).or_insert_with(|| {
+                        r.slots.push(r.out.quad(quad, 0));
+                        r.of_element.push(NONE);
+                        r.slots.len() - 1
+                    })
+                }
+                Slot::Quad(_) | Slot::OtherFace(_) => element,
+                Slot::Elsewhere => continue,
+            };
+            if let Some(surface) = surface {
+                r.of_element[face] = r.sets.join(r.of_element[face], surface);
+            }
+        }
+    }
+}
+
+fn finish(mut r: Reader<'_>) -> Result<MeshData, ReadError> {
+    place_sides(&mut r);
+    r.out.tag_by_groups(&r.slots, &r.of_element, &r.sets);
+    r.of_node.resize(r.out.mesh.points.len(), NONE);
+    let tags = r.node_sets.tags(r.of_node.iter().copied());
+    r.out.point_tags = r.of_node.iter().map(|&c| tags.of(c)).collect();
+    r.out.name_tags(tags.names(TagOn::Points));
+    Ok(r.out.finish())
 }

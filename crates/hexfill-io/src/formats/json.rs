@@ -1,13 +1,38 @@
 //! JSON as used for hex templates: `{"hexes": [[8 indices], ...], "boundary_quads": [[4 indices], ...]}`, optionally with
-//! `points`, `point_tags`, `quad_tags` and `hex_tags`. Without `points` a file holds connectivity alone.
+//! `points`, `point_tags`, `quad_tags`, `hex_tags`, `tag_names` (`[["faces", 3, "inlet"], ...]`), and `point_data`, `quad_data` and
+//! `hex_data` (objects of arrays, `null` for "no value"). Without `points` a file holds connectivity alone.
 
 use crate::assembly::Assembly;
-use crate::data::MeshData;
+use crate::data::{MeshData, TagName, TagOn};
 use crate::error::{Place, Position, ReadError};
 use crate::source::Source;
 use crate::write::Real;
 use serde::Deserialize;
 use std::io::{self, Write};
+
+/// Arrays in the order of the file.
+#[derive(Default)]
+struct Data(Vec<(String, Vec<f64>)>);
+
+impl<'de> Deserialize<'de> for Data {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Visitor;
+        impl<'de> serde::de::Visitor<'de> for Visitor {
+            type Value = Data;
+            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str("an object of arrays of numbers")
+            }
+            fn visit_map<A: serde::de::MapAccess<'de>>(self, mut map: A) -> Result<Data, A::Error> {
+                let mut arrays = Vec::new();
+                while let Some((name, values)) = map.next_entry::<String, Vec<Option<f64>>>()? {
+                    arrays.push((name, values.into_iter().map(|x| x.unwrap_or(f64::NAN)).collect()));
+                }
+                Ok(Data(arrays))
+            }
+        }
+        deserializer.deserialize_map(Visitor)
+    }
+}
 
 #[derive(Deserialize)]
 struct File {
@@ -20,6 +45,14 @@ struct File {
     point_tags: Option<Vec<i64>>,
     quad_tags: Option<Vec<i64>>,
     hex_tags: Option<Vec<i64>>,
+    #[serde(default)]
+    tag_names: Vec<(String, i64, String)>,
+    #[serde(default)]
+    point_data: Data,
+    #[serde(default)]
+    quad_data: Data,
+    #[serde(default)]
+    hex_data: Data,
     /// Entries that are passed over.
     #[serde(flatten)]
     rest: std::collections::BTreeMap<String, serde::de::IgnoredAny>,
@@ -87,7 +120,25 @@ pub(crate) fn read(mut source: Source<'_>) -> Result<MeshData, ReadError> {
             return malformed(format!("{due} `{name}`"), format!("{}", tags.len()), "give one each");
         }
     }
+    for (name, arrays, due) in [
+        ("point_data", &file.point_data, n_points),
+        ("quad_data", &file.quad_data, file.boundary_quads.iter().filter(|q| q.len() == 4).count()),
+        ("hex_data", &file.hex_data, file.hexes.len()),
+    ] {
+        if let Some((array, values)) = arrays.0.iter().find(|(_, v)| v.len() != due) {
+            let expected = format!("{due} values of `{array}` in `{name}`");
+            return malformed(expected, format!("{}", values.len()), "give one each");
+        }
+    }
+    let mut names = Vec::new();
+    for (on, tag, name) in file.tag_names {
+        let Some(&(_, on)) = ON.iter().find(|(word, _)| *word == on) else {
+            return malformed("`points`, `faces` or `cells` in `tag_names`".to_owned(), on, "correct it");
+        };
+        names.push(TagName { on, tag, name });
+    }
     let mut out = Assembly::default();
+    out.name_tags(names.into_iter());
     for key in file.rest.keys() {
         out.ignore(&format!("`{key}` entries"));
     }
@@ -102,6 +153,7 @@ pub(crate) fn read(mut source: Source<'_>) -> Result<MeshData, ReadError> {
     out.mesh.points = file.points.unwrap_or_default();
     let mut mesh = out.finish();
     mesh.has_coordinates = has_coordinates;
+    (mesh.point_data, mesh.quad_data, mesh.hex_data) = (file.point_data.0, file.quad_data.0, file.hex_data.0);
     mesh.point_tags = point_tags.filter(|tags| tags.iter().any(|&t| t != 0));
     Ok(mesh)
 }
@@ -128,7 +180,40 @@ pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
             row(out, tags.iter())?;
         }
     }
+    write_names(out, data)?;
+    for (name, arrays) in
+        [("point_data", &data.point_data), ("quad_data", &data.quad_data), ("hex_data", &data.hex_data)]
+    {
+        if arrays.is_empty() {
+            continue;
+        }
+        write!(out, ",\n\"{name}\": ")?;
+        let mut separator = "{\n";
+        for (name, values) in arrays {
+            write!(out, "{separator}{}: ", text(name))?;
+            row(out, values.iter().map(|&x| if x.is_finite() { Real(x).to_string() } else { "null".to_owned() }))?;
+            separator = ",\n";
+        }
+        out.write_all(b"\n}")?;
+    }
     out.write_all(b"\n}\n")
+}
+
+/// The words for what a tag is on.
+const ON: [(&str, TagOn); 3] = [("points", TagOn::Points), ("faces", TagOn::Faces), ("cells", TagOn::Cells)];
+
+fn write_names(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
+    if data.tag_names.is_empty() {
+        return Ok(());
+    }
+    let word = |on| ON.iter().find(|(_, o)| *o == on).map_or("", |(word, _)| word);
+    out.write_all(b",\n\"tag_names\": ")?;
+    rows(out, data.tag_names.iter().map(|n| [text(word(n.on)), n.tag.to_string(), text(&n.name)].into_iter()))
+}
+
+/// A JSON string.
+fn text(text: &str) -> String {
+    serde_json::Value::from(text).to_string()
 }
 
 fn rows<T: std::fmt::Display>(

@@ -1,6 +1,7 @@
 //! MEDIT `.mesh` (ASCII): sections of a keyword, a count and that many lines, each line ending in a reference number (the tag).
 //!
 //! Written are quads first, then triangles: their order among each other is not kept.
+//! Names of tags are kept in comments.
 //! Sections that are not about points, faces and cells (corners, ridges, normals ...) are passed over. `End` closes the file.
 
 use crate::assembly::Assembly;
@@ -111,6 +112,7 @@ pub(crate) fn read(source: Source<'_>) -> Result<MeshData, ReadError> {
     if !ended {
         out.note("the file has no `End`: it may be cut off between two sections");
     }
+    out.name_tags(s.take_tag_names().into_iter());
     Ok(out.finish())
 }
 
@@ -146,7 +148,11 @@ fn skip_section(s: &mut Source<'_>) -> Result<(), ReadError> {
 }
 
 pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
-    writeln!(out, "MeshVersionFormatted 2\nDimension 3\nVertices\n{}", data.points.len())?;
+    writeln!(out, "MeshVersionFormatted 2")?;
+    for name in &data.tag_names {
+        writeln!(out, "#{}", name.line())?;
+    }
+    writeln!(out, "Dimension 3\nVertices\n{}", data.points.len())?;
     for (i, point) in data.points.iter().enumerate() {
         write_point(out, point, " ")?;
         writeln!(out, " {}", data.point_tags.as_ref().map_or(0, |tags| tags[i]))?;

@@ -1,12 +1,13 @@
-//! Wavefront OBJ: points (`v`), faces (`f`) and groups (`g`). Texture and normal indices are passed over.
+//! Wavefront OBJ: points (`v`), faces (`f`), groups (`g`), objects (`o`) and materials (`usemtl`). Texture and normal indices are
+//! passed over.
 //!
 //! Indices count from 1; negative ones count back from the last point before the line. A backslash at the end joins a line
-//! with the next. Groups become tags of faces (see `names`).
+//! with the next. Groups, objects and materials become tags of faces (see `groups`); all are written as groups.
 
 use crate::assembly::{Assembly, Slot};
-use crate::data::MeshData;
+use crate::data::{MeshData, TagOn};
 use crate::error::ReadError;
-use crate::names::{Names, name_of};
+use crate::groups::{Combination, Groups, NONE, name_of};
 use crate::source::{Source, parse_integer};
 use crate::write::{has_cell_tags, write_indices, write_point};
 use std::io::{self, Write};
@@ -14,10 +15,11 @@ use std::io::{self, Write};
 pub(crate) fn read(source: Source<'_>) -> Result<MeshData, ReadError> {
     let mut s = source.with_comments(b'#');
     let mut out = Assembly::default();
-    let mut names = Names::default();
-    let mut group = None;
-    // Group of each face (0: none, otherwise stand-in + 1).
-    let mut groups: Vec<usize> = Vec::new();
+    let mut groups = Groups::default();
+    // The groups, the object and the material that faces are in now, and their combination.
+    let mut now: [Vec<u32>; 3] = Default::default();
+    let mut combination = NONE;
+    let mut combinations: Vec<Combination> = Vec::new();
     let mut slots: Vec<Slot> = Vec::new();
     // The largest index that names a point further down, and its line.
     let mut forward: Option<(i64, u64)> = None;
@@ -64,15 +66,20 @@ pub(crate) fn read(source: Source<'_>) -> Result<MeshData, ReadError> {
                     ));
                 }
                 slots.push(out.face(&face, 0));
-                groups.push(group.map_or(0, |g: usize| g + 1));
+                combinations.push(combination);
             }
-            b"g" => {
-                // Several names on the line are one combination of groups.
-                let name = String::from_utf8_lossy(s.rest()).into_owned();
-                group = (!name.is_empty()).then(|| names.stand_in(&name));
+            // Several names of a `g` are several groups; objects and materials have one, blanks and all.
+            kind @ (b"g" | b"o" | b"usemtl") => {
+                let place = [b"g" as &[u8], b"o", b"usemtl"].iter().position(|k| *k == kind).unwrap_or(0);
+                let rest = String::from_utf8_lossy(s.rest()).into_owned();
+                let names = if place == 0 { rest.split_whitespace().collect() } else { vec![rest.as_str()] };
+                // `default` is the name of what is in no group, `None` that of no material.
+                let nothing = ["", "default", "None", "(null)", "off"];
+                now[place] = names.into_iter().filter(|n| !nothing.contains(n)).map(|n| groups.named(n)).collect();
+                combination = now.iter().flatten().fold(NONE, |c, &group| groups.join(c, group));
             }
             b"l" | b"p" => out.ignore("line and point elements"),
-            b"vt" | b"vn" | b"vp" | b"s" | b"o" | b"usemtl" | b"mtllib" => skip_continued(&mut s)?,
+            b"vt" | b"vn" | b"vp" | b"s" | b"mtllib" => skip_continued(&mut s)?,
             _ => {
                 let text = s.string(keyword);
                 let looks_like_obj = text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_') && lines > 1;
@@ -101,23 +108,7 @@ pub(crate) fn read(source: Source<'_>) -> Result<MeshData, ReadError> {
             return Err(ReadError::IndexOutOfRange { at, what: "vertex".to_owned(), given, lowest: 1, highest });
         }
     }
-    let mut used = vec![false; groups.iter().max().map_or(0, |&g| g)];
-    for &group in &groups {
-        if group > 0 {
-            used[group - 1] = true;
-        }
-    }
-    // One nameless number for all faces says nothing.
-    let (tags, notes) = names.tags(&used, "group");
-    let says_nothing = notes.len() == 1 && used.iter().filter(|&&u| u).count() == 1 && !groups.contains(&0);
-    if !says_nothing {
-        for (&slot, &group) in slots.iter().zip(&groups) {
-            if group > 0 {
-                out.set_tag(slot, tags[group - 1]);
-            }
-        }
-        notes.into_iter().for_each(|n| out.note(n));
-    }
+    out.tag_by_groups(&slots, &combinations, &groups);
     Ok(out.finish())
 }
 
@@ -164,7 +155,10 @@ pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
     let mut group = None;
     for (face, tag) in data.tagged_faces() {
         if has_cell_tags(data) && group != Some(tag) {
-            writeln!(out, "g {}", name_of(tag))?;
+            let names = data.tag_names.iter().filter(|n| n.on == TagOn::Faces && n.tag == tag);
+            let words: Vec<String> =
+                names.map(|n| n.name.replace(|c: char| c.is_whitespace() || c.is_control(), "_")).collect();
+            writeln!(out, "g {}", if words.is_empty() { name_of(tag) } else { words.join(" ") })?;
             group = Some(tag);
         }
         out.write_all(b"f")?;

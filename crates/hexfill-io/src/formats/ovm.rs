@@ -3,16 +3,21 @@
 //! Half-edge `2 e` runs as edge `e`, `2 e + 1` against it; half-face `2 f` is face `f`, `2 f + 1` its reverse. The half-faces of
 //! a cell are counter-clockwise seen from inside. On writing, the faces of the mesh come first, as they are, then the other
 //! facets of the hexes. On reading, the faces are those marked by our own property `hexfill:face`, otherwise all that have at most
-//! one cell. A second property keeps the first corner of each hex, because half-faces know the cell only up to rotation.
+//! one cell. Other properties are tags and data; names of tags are kept in comments. A second property keeps the first corner of each hex, because half-faces know the cell only up to rotation.
 
-use crate::assembly::Assembly;
+use crate::arrays::{self, component};
+use crate::assembly::{Assembly, Slot, Values};
 use crate::data::MeshData;
 use crate::error::ReadError;
 use crate::orders::OVM_HALF_FACES;
 use crate::source::{Source, reserve};
-use crate::write::{has_cell_tags, write_point};
+use crate::write::{Real, has_cell_tags, unquoted, write_indices, write_point};
 use rustc_hash::FxHashMap;
 use std::io::{self, Write};
+
+mod topology;
+
+use topology::Topology;
 
 const FACE_MARK: &str = "hexfill:face";
 const CORNER_MARK: &str = "hexfill:corner";
@@ -25,6 +30,27 @@ struct Properties {
     cell_tags: Option<Vec<i64>>,
     face_marks: Option<Vec<i64>>,
     corners: Option<Vec<i64>>,
+    /// Other properties: on what, name, components, values.
+    arrays: Vec<(On, String, usize, Vec<f64>)>,
+}
+
+/// What a property is on.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum On {
+    Points,
+    Faces,
+    Cells,
+}
+
+/// How many numbers a value of a type has; 0 for a type that is no number.
+fn components_of(scalar: &str) -> usize {
+    match scalar {
+        "int" | "long" | "short" | "char" | "unsigned int" | "uint" | "float" | "double" | "bool" => 1,
+        vector => match vector.as_bytes() {
+            [b'v', b'e', b'c', n @ b'2'..=b'4', b'd' | b'f' | b'i'] => usize::from(n - b'0'),
+            _ => 0,
+        },
+    }
 }
 
 pub(crate) fn read(source: Source<'_>) -> Result<MeshData, ReadError> {
@@ -84,6 +110,7 @@ pub(crate) fn read(source: Source<'_>) -> Result<MeshData, ReadError> {
         cells.push(cell);
     }
     let properties = read_properties(&mut s, &mut out, n_points, faces.len(), cells.len())?;
+    let mut face_slots = vec![Slot::Elsewhere; faces.len()];
     for (f, face) in faces.iter().enumerate() {
         let listed = match &properties.face_marks {
             Some(marks) => marks[f] != 0,
@@ -95,14 +122,29 @@ pub(crate) fn read(source: Source<'_>) -> Result<MeshData, ReadError> {
             if properties.face_marks.is_none() && cells_of_face[f].0 == 1 && cells_of_face[f].1.is_multiple_of(2) {
                 face[1..].reverse();
             }
-            out.face(&face, properties.face_tags.as_ref().map_or(0, |t| t[f]));
+            face_slots[f] = out.face(&face, properties.face_tags.as_ref().map_or(0, |t| t[f]));
         }
     }
+    let mut cell_slots = Vec::with_capacity(cells.len());
     for (c, cell) in cells.iter().enumerate() {
         let tag = properties.cell_tags.as_ref().map_or(0, |t| t[c]);
         let corner = properties.corners.as_ref().and_then(|t| u32::try_from(t[c]).ok());
-        add_cell(&s, &mut out, &faces, cell, corner, tag, c)?;
+        cell_slots.push(add_cell(&s, &mut out, &faces, cell, corner, tag, c)?);
     }
+    // The faces that only cells have carry no data of their own.
+    let listed: Vec<usize> = (0..faces.len()).filter(|&f| face_slots[f] != Slot::Elsewhere).collect();
+    for (on, name, components, values) in properties.arrays {
+        match on {
+            On::Points => out.point_array(&name, components, &Values::Real(values)),
+            On::Faces => {
+                let slots: Vec<Slot> = listed.iter().map(|&f| face_slots[f]).collect();
+                let values = listed.iter().flat_map(|f| &values[f * components..][..components]).copied().collect();
+                out.cell_array(&name, components, &Values::Real(values), &slots);
+            }
+            On::Cells => out.cell_array(&name, components, &Values::Real(values), &cell_slots),
+        }
+    }
+    out.name_tags(s.take_tag_names().into_iter());
     if let Some(tags) = properties.point_tags {
         out.point_tags = tags;
     }
@@ -182,10 +224,25 @@ fn read_properties(
             ("fprop", FACE_MARK) => (&mut properties.face_marks, n_faces),
             ("cprop", CORNER_MARK) => (&mut properties.corners, n_cells),
             _ => {
-                // How many lines a foreign property has depends on its type: everything but headers is skipped.
-                if kind.ends_with("prop") {
+                let (on, n) = match kind.as_str() {
+                    "vprop" => (On::Points, n_points),
+                    "fprop" => (On::Faces, n_faces),
+                    "cprop" => (On::Cells, n_cells),
+                    // How many lines another property has is not known: everything but headers is skipped.
+                    _ => {
+                        if kind.ends_with("prop") {
+                            out.ignore("properties");
+                        }
+                        continue;
+                    }
+                };
+                let components = components_of(&scalar);
+                if components == 0 || name.is_empty() {
                     out.ignore("properties");
+                    continue;
                 }
+                let values = read_values(s, n, components)?;
+                properties.arrays.push((on, name.to_owned(), components, values));
                 continue;
             }
         };
@@ -204,6 +261,19 @@ fn read_properties(
     Ok(properties)
 }
 
+/// The values of a property, one element a line.
+fn read_values(s: &mut Source<'_>, n: usize, components: usize) -> Result<Vec<f64>, ReadError> {
+    let mut values = Vec::with_capacity(reserve((n * components) as u64));
+    for i in 0..n {
+        line(s, n as u64, "values of the property", i as u64)?;
+        for _ in 0..components {
+            let span = s.need_word("a value")?;
+            values.push(s.number(span, "a value")?);
+        }
+    }
+    Ok(values)
+}
+
 /// Finds out what a cell is from its half-faces.
 fn add_cell(
     s: &Source<'_>,
@@ -213,7 +283,7 @@ fn add_cell(
     corner: Option<u32>,
     tag: i64,
     c: usize,
-) -> Result<(), ReadError> {
+) -> Result<Slot, ReadError> {
     let cycles: Vec<Vec<u32>> = cell
         .iter()
         .map(|&half_face| {
@@ -228,7 +298,7 @@ fn add_cell(
     let quads = cycles.iter().filter(|c| c.len() == 4).count();
     if triangles + quads != cycles.len() {
         out.ignore("polyhedra that are no hexes");
-        return Ok(());
+        return Ok(Slot::Elsewhere);
     }
     // The bottom: the triangle of a tet or wedge, the quad of a pyramid or hex.
     let (bottom, n_nodes) = match (triangles, quads) {
@@ -238,7 +308,7 @@ fn add_cell(
         (2, 3) => (cycles.iter().position(|c| c.len() == 3).unwrap_or(0), 6),
         _ => {
             out.ignore("polyhedra that are no hexes");
-            return Ok(());
+            return Ok(Slot::Elsewhere);
         }
     };
     let nodes = corners(&cycles, bottom, n_nodes).ok_or_else(|| {
@@ -250,11 +320,10 @@ fn add_cell(
             hex[..4].rotate_left(turns);
             hex[4..].rotate_left(turns);
         }
-        out.hex(hex, tag);
-    } else {
-        out.small_cell(&nodes, tag);
+        return Ok(out.hex(hex, tag));
     }
-    Ok(())
+    out.small_cell(&nodes, tag);
+    Ok(Slot::Elsewhere)
 }
 
 /// Nodes of a cell: the bottom cycle (seen from inside), then the vertex above each, then nothing else may be left.
@@ -300,84 +369,55 @@ fn corners(cycles: &[Vec<u32>], bottom: usize, n_nodes: usize) -> Option<Vec<u32
     closed.then_some(nodes)
 }
 
-/// Edges and faces on writing, each found again by its vertices.
-#[derive(Default)]
-struct Topology {
-    edges: Vec<[u32; 2]>,
-    edge_of: FxHashMap<[u32; 2], u64>,
-    faces: Vec<Vec<u64>>,
-    /// From the smallest rotation of a cycle to its half-face.
-    half_face_of: FxHashMap<Vec<u32>, u64>,
+/// More edges than numbers: refused before anything is written.
+fn check_size(data: &MeshData) -> io::Result<()> {
+    let sides: usize = data.faces().map(<[u32]>::len).sum();
+    let edges = [(12, data.hexes.len()), (6, data.tets.len()), (9, data.wedges.len()), (8, data.pyramids.len())];
+    let most = edges.into_iter().fold(sides, |sum, (each, n)| sum.saturating_add(n.saturating_mul(each)));
+    if most < 1 << 31 {
+        Ok(())
+    } else {
+        Err(io::Error::other("too large: OVM files are written with up to 2^31 edges"))
+    }
 }
 
-/// The rotation of a cycle that starts at its smallest vertex.
-fn canonical(cycle: &[u32]) -> Vec<u32> {
-    let start = (0..cycle.len()).min_by_key(|&k| cycle[k]).unwrap_or(0);
-    let mut rotated = cycle.to_vec();
-    rotated.rotate_left(start);
-    rotated
-}
+/// Half-faces of each kind of cell as its corners, counter-clockwise seen from inside.
+const TET: [&[usize]; 4] = [&[0, 1, 2], &[0, 2, 3], &[0, 3, 1], &[1, 3, 2]];
+const WEDGE: [&[usize]; 5] = [&[0, 1, 2], &[3, 5, 4], &[1, 0, 3, 4], &[2, 1, 4, 5], &[0, 2, 5, 3]];
+const PYRAMID: [&[usize]; 5] = [&[0, 1, 2, 3], &[1, 0, 4], &[2, 1, 4], &[3, 2, 4], &[0, 3, 4]];
 
-impl Topology {
-    fn half_edge(&mut self, from: u32, to: u32) -> u64 {
-        if let Some(&edge) = self.edge_of.get(&[from, to]) {
-            return 2 * edge;
+/// The half-faces of all cells, one after the other: hexes, tets, wedges, pyramids.
+fn half_faces(topology: &mut Topology, data: &MeshData) -> Vec<u32> {
+    let n_small = 4 * data.tets.len() + 5 * (data.wedges.len() + data.pyramids.len());
+    let mut all = Vec::with_capacity(6 * data.hexes.len() + n_small);
+    let mut cycle = Vec::with_capacity(4);
+    let mut add = |nodes: &[u32], facets: &[&[usize]]| {
+        for corners in facets {
+            cycle.clear();
+            cycle.extend(corners.iter().map(|&i| nodes[i]));
+            all.push(topology.half_face(&cycle));
         }
-        if let Some(&edge) = self.edge_of.get(&[to, from]) {
-            return 2 * edge + 1;
-        }
-        let edge = self.edges.len() as u64;
-        self.edges.push([from, to]);
-        self.edge_of.insert([from, to], edge);
-        2 * edge
-    }
-
-    fn add_face(&mut self, cycle: &[u32]) -> u64 {
-        let face = self.faces.len() as u64;
-        let half_edges = (0..cycle.len()).map(|k| self.half_edge(cycle[k], cycle[(k + 1) % cycle.len()])).collect();
-        self.faces.push(half_edges);
-        let reverse: Vec<u32> = cycle.iter().rev().copied().collect();
-        self.half_face_of.entry(canonical(cycle)).or_insert(2 * face);
-        self.half_face_of.entry(canonical(&reverse)).or_insert(2 * face + 1);
-        2 * face
-    }
-
-    fn half_face(&mut self, cycle: &[u32]) -> u64 {
-        match self.half_face_of.get(&canonical(cycle)) {
-            Some(&half_face) => half_face,
-            None => self.add_face(cycle),
-        }
-    }
+    };
+    let of_hex = OVM_HALF_FACES.each_ref().map(<[usize; 4]>::as_slice);
+    data.hexes.iter().for_each(|hex| add(hex, &of_hex));
+    data.tets.iter().for_each(|tet| add(tet, &TET));
+    data.wedges.iter().for_each(|wedge| add(wedge, &WEDGE));
+    data.pyramids.iter().for_each(|pyramid| add(pyramid, &PYRAMID));
+    all
 }
 
 pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
+    check_size(data)?;
     let mut topology = Topology::default();
-    for face in data.faces() {
-        topology.add_face(face);
+    data.faces().for_each(|face| topology.add_face(face));
+    let n_listed = topology.n_faces();
+    let cells = half_faces(&mut topology, data);
+    let n_other = topology.n_faces() - n_listed;
+    writeln!(out, "OVM ASCII")?;
+    for name in &data.tag_names {
+        writeln!(out, "#{}", name.line())?;
     }
-    let n_listed = topology.faces.len();
-    let mut cells: Vec<Vec<u64>> = Vec::new();
-    let mut add = |nodes: &[u32], half_faces: &[&[usize]]| {
-        cells.push(
-            half_faces
-                .iter()
-                .map(|corners| topology.half_face(&corners.iter().map(|&i| nodes[i]).collect::<Vec<_>>()))
-                .collect(),
-        );
-    };
-    for hex in &data.hexes {
-        add(hex, &OVM_HALF_FACES.each_ref().map(<[usize; 4]>::as_slice));
-    }
-    for tet in &data.tets {
-        add(tet, &[&[0, 1, 2], &[0, 2, 3], &[0, 3, 1], &[1, 3, 2]]);
-    }
-    for wedge in &data.wedges {
-        add(wedge, &[&[0, 1, 2], &[3, 5, 4], &[1, 0, 3, 4], &[2, 1, 4, 5], &[0, 2, 5, 3]]);
-    }
-    for pyramid in &data.pyramids {
-        add(pyramid, &[&[0, 1, 2, 3], &[1, 0, 4], &[2, 1, 4], &[3, 2, 4], &[0, 3, 4]]);
-    }
-    writeln!(out, "OVM ASCII\nVertices\n{}", data.points.len())?;
+    writeln!(out, "Vertices\n{}", data.points.len())?;
     for point in &data.points {
         write_point(out, point, " ")?;
         out.write_all(b"\n")?;
@@ -386,42 +426,78 @@ pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
     for [a, b] in &topology.edges {
         writeln!(out, "{a} {b}")?;
     }
-    writeln!(out, "Faces\n{}", topology.faces.len())?;
-    for face in &topology.faces {
-        write_list(out, face)?;
+    writeln!(out, "Faces\n{}", topology.n_faces())?;
+    for face in data.faces() {
+        let sides: Vec<u32> =
+            (0..face.len()).map(|k| topology.half_edge(face[k], face[(k + 1) % face.len()])).collect();
+        write_list(out, &sides)?;
     }
-    writeln!(out, "Polyhedra\n{}", cells.len())?;
-    for cell in &cells {
-        write_list(out, cell)?;
+    for face in n_listed..topology.n_faces() {
+        write_list(out, topology.half_edges(face))?;
     }
-    let n_other = topology.faces.len() - n_listed;
+    writeln!(out, "Polyhedra\n{}", data.cell_count())?;
+    let (hexes, rest) = cells.split_at(6 * data.hexes.len());
+    let (tets, others) = rest.split_at(4 * data.tets.len());
+    for (cells, facets) in [(hexes, 6), (tets, 4), (others, 5)] {
+        for cell in cells.chunks_exact(facets) {
+            write_list(out, cell)?;
+        }
+    }
     let face_marks = std::iter::repeat_n(1, n_listed).chain(std::iter::repeat_n(0, n_other));
-    property(out, "FProp", FACE_MARK, &face_marks.collect::<Vec<_>>())?;
-    let n_small = cells.len() - data.hexes.len();
+    property(out, "FProp", FACE_MARK, face_marks)?;
+    let n_small = data.cell_count() - data.hexes.len();
     let corners = data.hexes.iter().map(|hex| i64::from(hex[0])).chain(std::iter::repeat_n(-1, n_small));
-    property(out, "CProp", CORNER_MARK, &corners.collect::<Vec<_>>())?;
+    property(out, "CProp", CORNER_MARK, corners)?;
     if let Some(tags) = &data.point_tags {
-        property(out, "VProp", "tag", tags)?;
+        property(out, "VProp", "tag", tags.iter().copied())?;
     }
     if has_cell_tags(data) {
         let face_tags = data.tagged_faces().map(|(_, tag)| tag).chain(std::iter::repeat_n(0, n_other));
-        property(out, "FProp", "tag", &face_tags.collect::<Vec<_>>())?;
+        property(out, "FProp", "tag", face_tags)?;
         let hex_tags = (0..data.hexes.len()).map(|h| data.hex_tag(h)).chain(std::iter::repeat_n(0, n_small));
-        property(out, "CProp", "tag", &hex_tags.collect::<Vec<_>>())?;
+        property(out, "CProp", "tag", hex_tags)?;
+    }
+    write_data(out, data, n_other, n_small)
+}
+
+/// The data as properties, component by component; `n_other` faces and `n_small` cells at the end have none.
+fn write_data(out: &mut dyn Write, data: &MeshData, n_other: usize, n_small: usize) -> io::Result<()> {
+    for (name, values) in &data.point_data {
+        reals(out, "VProp", name, values.iter().copied())?;
+    }
+    let none = |n| std::iter::repeat_n(f64::NAN, n);
+    for (name, columns) in arrays::on_cells(data) {
+        let several = columns.len() > 1;
+        for (k, column) in columns.into_iter().enumerate() {
+            let name = if several { component(name, k) } else { name.to_owned() };
+            let (on_quads, on_hexes) = column.on();
+            if on_quads {
+                reals(out, "FProp", &name, column.faces().chain(none(n_other)))?;
+            }
+            if on_hexes {
+                reals(out, "CProp", &name, column.hexes().chain(none(n_small)))?;
+            }
+        }
     }
     Ok(())
 }
 
-fn write_list(out: &mut dyn Write, items: &[u64]) -> io::Result<()> {
-    write!(out, "{}", items.len())?;
-    for item in items {
-        write!(out, " {item}")?;
+fn reals(out: &mut dyn Write, kind: &str, name: &str, values: impl Iterator<Item = f64>) -> io::Result<()> {
+    writeln!(out, "{kind} double \"{}\"", unquoted(name))?;
+    for value in values {
+        writeln!(out, "{}", Real(value))?;
     }
+    Ok(())
+}
+
+fn write_list(out: &mut dyn Write, items: &[u32]) -> io::Result<()> {
+    write!(out, "{}", items.len())?;
+    write_indices(out, items, 0)?;
     out.write_all(b"\n")
 }
 
-fn property(out: &mut dyn Write, kind: &str, name: &str, values: &[i64]) -> io::Result<()> {
-    let wide = values.iter().any(|&v| i32::try_from(v).is_err());
+fn property(out: &mut dyn Write, kind: &str, name: &str, values: impl Iterator<Item = i64> + Clone) -> io::Result<()> {
+    let wide = values.clone().any(|v| i32::try_from(v).is_err());
     writeln!(out, "{kind} {} \"{name}\"", if wide { "long" } else { "int" })?;
     for value in values {
         writeln!(out, "{value}")?;

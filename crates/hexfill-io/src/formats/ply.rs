@@ -1,12 +1,15 @@
 //! Stanford PLY: ASCII and both binary byte orders. Elements `vertex` and `face` are read, all others passed over.
 //!
-//! In ASCII every element is one line. A property `tag` of points or faces carries tags.
+//! In ASCII every element is one line. A property `tag` of points or faces carries tags, other properties that are no lists are
+//! data; names of tags are kept in comments.
 
-use crate::assembly::{Assembly, Values};
-use crate::data::MeshData;
+use crate::arrays::{self, CellColumn, component};
+use crate::assembly::{Assembly, Slot, Values};
+use crate::data::{MeshData, TagName};
 use crate::error::ReadError;
 use crate::source::{Source, reserve};
-use crate::write::{Real, all_tags, has_cell_tags, write_indices};
+use crate::write::{Real, all_tags, has_cell_tags, unquoted, write_indices};
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Write};
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -59,6 +62,8 @@ impl Scalar {
 
 struct Property {
     name: String,
+    /// What the array of its values is called: its name unless a comment says otherwise.
+    array: String,
     scalar: Scalar,
     /// Type of the length, for a list.
     list: Option<Scalar>,
@@ -76,12 +81,13 @@ enum Role {
     Skip,
     Axis(usize),
     Indices,
-    Tag,
+    /// Tags or data: the number of the array.
+    Array(usize),
 }
 
 pub(crate) fn read(mut s: Source<'_>) -> Result<MeshData, ReadError> {
-    let (encoding, elements) = read_header(&mut s)?;
     let mut out = Assembly::default();
+    let (encoding, elements) = read_header(&mut s, &mut out)?;
     if !elements.iter().any(|e| e.name == "vertex") {
         return Err(s.malformed_text(
             "an element `vertex`",
@@ -119,7 +125,7 @@ pub(crate) fn read(mut s: Source<'_>) -> Result<MeshData, ReadError> {
     Ok(out.finish())
 }
 
-fn read_header(s: &mut Source<'_>) -> Result<(Encoding, Vec<Element>), ReadError> {
+fn read_header(s: &mut Source<'_>, out: &mut Assembly) -> Result<(Encoding, Vec<Element>), ReadError> {
     if !s.next_full_line()? {
         return Err(s.empty());
     }
@@ -129,13 +135,23 @@ fn read_header(s: &mut Source<'_>) -> Result<(Encoding, Vec<Element>), ReadError
     }
     let mut encoding = None;
     let mut elements: Vec<Element> = Vec::new();
+    let mut names: BTreeMap<String, String> = BTreeMap::new();
     loop {
         if !s.next_line()? {
             return Err(s.truncated("`end_header`"));
         }
         let Some(keyword) = s.word() else { continue };
         match s.text(keyword) {
-            b"comment" | b"obj_info" => {}
+            b"comment" => {
+                let text = String::from_utf8_lossy(s.rest()).into_owned();
+                out.name_tags(TagName::from_line(&text).into_iter());
+                if let Some((property, name)) =
+                    text.strip_prefix(NAME_COMMENT).and_then(|t| t.trim_start().split_once(' '))
+                {
+                    names.insert(property.to_owned(), name.to_owned());
+                }
+            }
+            b"obj_info" => {}
             b"format" => {
                 let span = s.need_word("ascii, binary_little_endian or binary_big_endian")?;
                 encoding = Some(match s.text(span) {
@@ -169,6 +185,11 @@ fn read_header(s: &mut Source<'_>) -> Result<(Encoding, Vec<Element>), ReadError
             _ => return Err(s.malformed("a line of a PLY header", keyword, "repair the header")),
         }
     }
+    for property in elements.iter_mut().flat_map(|e| &mut e.properties) {
+        if let Some(name) = names.get(&property.name) {
+            property.array.clone_from(name);
+        }
+    }
     let Some(encoding) = encoding else {
         return Err(s.malformed_text("a `format` line", "a header without one".to_owned(), "repair the header"));
     };
@@ -199,7 +220,8 @@ fn read_property_line(s: &mut Source<'_>) -> Result<Property, ReadError> {
     };
     let scalar = scalar(s)?;
     let span = s.need_word("the name of the property")?;
-    Ok(Property { name: s.string(span), scalar, list })
+    let name = s.string(span);
+    Ok(Property { array: name.clone(), name, scalar, list })
 }
 
 fn start_element(s: &mut Source<'_>, encoding: Encoding, element: &Element, i: u64) -> Result<(), ReadError> {
@@ -269,16 +291,12 @@ fn end_element(s: &mut Source<'_>, encoding: Encoding) -> Result<(), ReadError> 
 
 fn read_points(s: &mut Source<'_>, encoding: Encoding, element: &Element, out: &mut Assembly) -> Result<(), ReadError> {
     let mut seen = [false; 3];
-    let mut tag_scalar = None;
+    let mut arrays: Vec<(String, Vec<f64>)> = Vec::new();
     let roles: Vec<Role> = element
         .properties
         .iter()
         .map(|p| match p.name.as_str() {
             _ if p.list.is_some() => Role::Skip,
-            "tag" => {
-                tag_scalar = Some(p.scalar);
-                Role::Tag
-            }
             name => match ["x", "y", "z"].iter().position(|a| *a == name) {
                 Some(axis) => {
                     seen[axis] = true;
@@ -287,7 +305,7 @@ fn read_points(s: &mut Source<'_>, encoding: Encoding, element: &Element, out: &
                     }
                     Role::Axis(axis)
                 }
-                None => Role::Skip,
+                None => array(&mut arrays, &p.array),
             },
         })
         .collect();
@@ -297,7 +315,6 @@ fn read_points(s: &mut Source<'_>, encoding: Encoding, element: &Element, out: &
     }
     out.mesh.points.reserve(reserve(element.count));
     let mut values = Vec::new();
-    let mut tags = Vec::new();
     for i in 0..element.count {
         start_element(s, encoding, element, i)?;
         let mut point = [0.0; 3];
@@ -311,26 +328,33 @@ fn read_points(s: &mut Source<'_>, encoding: Encoding, element: &Element, out: &
                         return Err(ReadError::NotFinite { at: s.place(), what, given: values[0].to_string() });
                     }
                 }
-                Role::Tag => tags.push(values[0]),
+                Role::Array(k) => arrays[k].1.push(values[0]),
                 _ => {}
             }
         }
         end_element(s, encoding)?;
         out.mesh.points.push(point);
     }
-    if tag_scalar.is_some() {
-        out.point_array("tag", &Values::Real(tags));
+    for (name, values) in arrays {
+        out.point_array(&name, 1, &Values::Real(values));
     }
     Ok(())
 }
 
+/// A property that is an array of its own.
+fn array(arrays: &mut Vec<(String, Vec<f64>)>, name: &str) -> Role {
+    arrays.push((name.to_owned(), Vec::new()));
+    Role::Array(arrays.len() - 1)
+}
+
 fn read_faces(s: &mut Source<'_>, encoding: Encoding, element: &Element, out: &mut Assembly) -> Result<(), ReadError> {
+    let mut arrays: Vec<(String, Vec<f64>)> = Vec::new();
     let roles: Vec<Role> = element
         .properties
         .iter()
         .map(|p| match (p.name.as_str(), p.list) {
             ("vertex_indices" | "vertex_index", Some(_)) if p.scalar.is_whole() => Role::Indices,
-            ("tag", None) => Role::Tag,
+            (_, None) => array(&mut arrays, &p.array),
             _ => Role::Skip,
         })
         .collect();
@@ -343,9 +367,9 @@ fn read_faces(s: &mut Source<'_>, encoding: Encoding, element: &Element, out: &m
     }
     let mut values = Vec::new();
     let mut face = Vec::new();
+    let mut slots: Vec<Slot> = Vec::new();
     for i in 0..element.count {
         start_element(s, encoding, element, i)?;
-        let mut tag = 0;
         for (property, &role) in element.properties.iter().zip(&roles) {
             read_property(s, encoding, property, &mut values)?;
             match role {
@@ -355,7 +379,7 @@ fn read_faces(s: &mut Source<'_>, encoding: Encoding, element: &Element, out: &m
                         face.push(s.checked_index(value as i64, 0, out.mesh.points.len(), "vertex")?);
                     }
                 }
-                Role::Tag => tag = values[0] as i64,
+                Role::Array(k) => arrays[k].1.push(values[0]),
                 _ => {}
             }
         }
@@ -364,7 +388,10 @@ fn read_faces(s: &mut Source<'_>, encoding: Encoding, element: &Element, out: &m
             let given = format!("{} of them", face.len());
             return Err(s.malformed_text("a face with three or more vertices", given, "remove or complete the face"));
         }
-        out.face(&face, tag);
+        slots.push(out.face(&face, 0));
+    }
+    for (name, values) in arrays {
+        out.cell_array(&name, 1, &Values::Real(values), &slots);
     }
     Ok(())
 }
@@ -379,10 +406,23 @@ pub(crate) fn write(out: &mut dyn Write, data: &MeshData, binary: bool) -> io::R
     let length_type = if longest > 255 { "uint" } else { "uchar" };
     let cell_tags = has_cell_tags(data);
     writeln!(out, "ply\nformat {} 1.0", if binary { "binary_little_endian" } else { "ascii" })?;
+    for name in &data.tag_names {
+        writeln!(out, "comment {}", name.line())?;
+    }
+    let on_points: Vec<&[f64]> = data.point_data.iter().map(|(_, values)| values.as_slice()).collect();
+    let on_faces: Vec<(String, CellColumn<'_>)> = single_columns(data);
+    let arrays = data.point_data.iter().map(|(name, _)| name).chain(on_faces.iter().map(|(name, _)| name));
+    let names = property_names(arrays.map(String::as_str));
+    for (array, name) in names.iter().filter(|(array, name)| *array != name) {
+        writeln!(out, "comment {NAME_COMMENT} {name} {}", unquoted(array))?;
+    }
     writeln!(out, "element vertex {}", data.points.len())?;
     writeln!(out, "property double x\nproperty double y\nproperty double z")?;
     if data.point_tags.is_some() {
         writeln!(out, "property {tag_type} tag")?;
+    }
+    for (name, _) in &data.point_data {
+        writeln!(out, "property double {}", names[name.as_str()])?;
     }
     // `int` is what all readers take; it is enough for 2^31 points.
     let index_type = if data.points.len() > i32::MAX as usize { "uint" } else { "int" };
@@ -390,7 +430,14 @@ pub(crate) fn write(out: &mut dyn Write, data: &MeshData, binary: bool) -> io::R
     if cell_tags {
         writeln!(out, "property {tag_type} tag")?;
     }
+    for (name, _) in &on_faces {
+        writeln!(out, "property double {}", names[name.as_str()])?;
+    }
     writeln!(out, "end_header")?;
+    let write_value = |out: &mut dyn Write, value: f64| match binary {
+        true => out.write_all(&value.to_le_bytes()),
+        false => write!(out, " {}", Real(value)),
+    };
     let write_tag = |out: &mut dyn Write, tag: i64| match (binary, wide) {
         (false, false) => write!(out, " {tag}"),
         (false, true) => write!(out, " {}", Real(tag as f64)),
@@ -408,10 +455,14 @@ pub(crate) fn write(out: &mut dyn Write, data: &MeshData, binary: bool) -> io::R
         if let Some(tags) = &data.point_tags {
             write_tag(out, tags[i])?;
         }
+        for values in &on_points {
+            write_value(out, values[i])?;
+        }
         if !binary {
             out.write_all(b"\n")?;
         }
     }
+    let mut face_values: Vec<_> = on_faces.iter().map(|(_, column)| column.faces()).collect();
     for (face, tag) in data.tagged_faces() {
         if binary {
             match longest > 255 {
@@ -428,9 +479,43 @@ pub(crate) fn write(out: &mut dyn Write, data: &MeshData, binary: bool) -> io::R
         if cell_tags {
             write_tag(out, tag)?;
         }
+        for values in &mut face_values {
+            write_value(out, values.next().unwrap_or(f64::NAN))?;
+        }
         if !binary {
             out.write_all(b"\n")?;
         }
     }
     Ok(())
+}
+
+/// The arrays on faces, component by component, each with its name.
+fn single_columns(data: &MeshData) -> Vec<(String, CellColumn<'_>)> {
+    let mut all = Vec::new();
+    for (name, columns) in arrays::on_cells(data) {
+        let several = columns.len() > 1;
+        let named = |k| if several { component(name, k) } else { name.to_owned() };
+        all.extend(columns.iter().enumerate().map(|(k, &column)| (named(k), column)));
+    }
+    all
+}
+
+/// The comment that gives a property its name where PLY (or meshio) takes fewer characters.
+const NAME_COMMENT: &str = "hexfill: property";
+
+/// A name for each array of letters, digits and underscores, each its own and none that means something else.
+fn property_names<'a>(arrays: impl Iterator<Item = &'a str>) -> BTreeMap<&'a str, String> {
+    let mut taken: BTreeSet<String> =
+        ["x", "y", "z", "tag", "vertex_indices", "vertex_index"].map(str::to_owned).into_iter().collect();
+    let mut names = BTreeMap::new();
+    for array in arrays {
+        names.entry(array).or_insert_with(|| {
+            let mut name: String = array.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
+            while name.is_empty() || !taken.insert(name.clone()) {
+                name.push('_');
+            }
+            name
+        });
+    }
+    names
 }

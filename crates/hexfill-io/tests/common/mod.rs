@@ -2,7 +2,7 @@
 
 #![allow(dead_code, missing_docs)]
 
-use hexfill_io::{Format, MeshData, OtherFace};
+use hexfill_io::{Format, MeshData, OtherFace, TagName, TagOn};
 
 /// Two hexes glued along a facet, of different heights and corner numberings, with the ten boundary quads outwards and a
 /// different tag on everything: its mirror image is another mesh.
@@ -46,12 +46,47 @@ pub fn chiral() -> MeshData {
     }
 }
 
+/// The chiral mesh with names for its tags, as far as the format has tags: all named, some by several names, one name twice.
+pub fn named_for(format: Format) -> MeshData {
+    let mut mesh = chiral_for(format);
+    // As numbered where names decide: by first appearance, single names first.
+    mesh.quad_tags = Some(vec![1, 2, 2, 5, 5, 2, 3, 3, 4, 1]);
+    mesh.hex_tags = (!mesh.hexes.is_empty()).then(|| vec![1, 2]);
+    mesh.point_tags = Some((0..12).map(|i| i % 3).collect());
+    let name = |(on, tag, name): (TagOn, i64, &str)| TagName { on, tag, name: name.to_owned() };
+    mesh.tag_names = [
+        (TagOn::Points, 1, "fixed"),
+        (TagOn::Points, 2, "loaded"),
+        (TagOn::Faces, 1, "inlet"),
+        (TagOn::Faces, 2, "outlet"),
+        (TagOn::Faces, 3, "wall"),
+        (TagOn::Faces, 4, "roof"),
+        (TagOn::Faces, 5, "inlet"),
+        (TagOn::Faces, 5, "wall"),
+        (TagOn::Cells, 1, "steel"),
+        (TagOn::Cells, 2, "rubber"),
+    ]
+    .map(name)
+    .to_vec();
+    if mesh.hexes.is_empty() {
+        mesh.tag_names.retain(|n| n.on != TagOn::Cells);
+    }
+    without_what_is_not_held(mesh, format)
+}
+
 /// The chiral mesh with data, for the formats that hold it.
 pub fn chiral_for(format: Format) -> MeshData {
     let mut mesh = chiral();
     if format.holds_data() {
         mesh.hex_data = vec![("scaled Jacobian".to_owned(), vec![0.75, -1e-300])];
         mesh.point_data = vec![("height".to_owned(), (0..12).map(|i| f64::from(i) / 7.0).collect())];
+        for k in 0..3 {
+            let column = |n: i32, scale: f64| (0..n).map(|i| f64::from(3 * i + k) * scale).collect();
+            mesh.point_data.push((format!("shift:{k}"), column(12, 0.1)));
+            mesh.hex_data.push((format!("flux:{k}"), column(2, -1.5)));
+            mesh.quad_data.push((format!("flux:{k}"), column(10, 0.3)));
+        }
+        mesh.quad_data.push(("load".to_owned(), (0..10).map(|i| f64::from(i) / 3.0).collect()));
     }
     if !format.holds_cells() {
         mesh = mesh.surface_only();
@@ -62,15 +97,26 @@ pub fn chiral_for(format: Format) -> MeshData {
 pub fn without_what_is_not_held(mut mesh: MeshData, format: Format) -> MeshData {
     if !format.holds_point_tags() {
         mesh.point_tags = None;
+        mesh.tag_names.retain(|n| n.on != TagOn::Points);
     }
     if !format.holds_cell_tags() {
         mesh.quad_tags = None;
         mesh.hex_tags = None;
+        mesh.tag_names.clear();
         mesh.other_faces.iter_mut().for_each(|f| f.tag = 0);
     }
     if !format.holds_data() {
         mesh.point_data.clear();
+        mesh.quad_data.clear();
         mesh.hex_data.clear();
+    }
+    mesh
+}
+
+/// Abaqus knows quads on hexes as faces of these: their first corner is not kept.
+pub fn with_any_first_corner(mut mesh: MeshData, format: Format) -> MeshData {
+    if format == Format::Inp {
+        mesh.quads.iter_mut().for_each(|q| *q = quad_key(q));
     }
     mesh
 }
@@ -101,9 +147,11 @@ pub fn assert_same(found: &MeshData, due: &MeshData, what: &str) {
     };
     assert_eq!(data_bits(&found.hex_data), data_bits(&due.hex_data), "hex data of {what}");
     assert_eq!(data_bits(&found.point_data), data_bits(&due.point_data), "point data of {what}");
+    assert_eq!(data_bits(&found.quad_data), data_bits(&due.quad_data), "quad data of {what}");
     let rest = |m: &MeshData| MeshData {
         points: Vec::new(),
         hex_data: Vec::new(),
+        quad_data: Vec::new(),
         point_data: Vec::new(),
         notes: Vec::new(),
         ..m.clone()

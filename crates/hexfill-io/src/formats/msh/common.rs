@@ -1,13 +1,16 @@
 //! What versions 2.2 and 4.1 share: header, element types, node numbers, data sections.
 
 use super::{v2, v4};
+use crate::arrays::{self, CellColumn, component};
 use crate::assembly::{Assembly, Slot, Values};
-use crate::data::MeshData;
+use crate::data::{MeshData, TagOn};
 use crate::error::{ReadError, snippet};
 use crate::format::Format;
-use crate::source::{Source, Span, reserve};
+use crate::groups::{Combination, Groups, NONE, carried};
+use crate::source::{Source, Span};
 use crate::write::{Real, unquoted};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
+use std::collections::BTreeMap;
 use std::io::{self, Write};
 
 /// Numbers of nodes of Gmsh's element types 1 to 31 (0: no such type here).
@@ -67,6 +70,11 @@ pub(crate) struct Reader<'r> {
     pub(crate) slots: Vec<Slot>,
     /// Per element: elementary entity.
     pub(crate) entities: Vec<i64>,
+    /// Physical groups of faces and of cells, and per element the combination it is in.
+    groups: [Groups; 2],
+    combinations: Vec<Combination>,
+    /// Physical groups (dimension, number) that stand for "no group".
+    untagged: FxHashSet<(i64, i64)>,
     /// Binary file, and whether its bytes must be reversed.
     pub(crate) binary: Option<bool>,
     pub(crate) has_nodes: bool,
@@ -136,6 +144,9 @@ pub(crate) fn read(mut s: Source<'_>) -> Result<MeshData, ReadError> {
         elements: Numbers::default(),
         slots: Vec::new(),
         entities: Vec::new(),
+        groups: Default::default(),
+        combinations: Vec::new(),
+        untagged: FxHashSet::default(),
         binary,
         has_nodes: false,
         has_elements: false,
@@ -157,6 +168,7 @@ pub(crate) fn read(mut s: Source<'_>) -> Result<MeshData, ReadError> {
     if !reader.has_elements {
         return Err(reader.s.truncated("a section $Elements"));
     }
+    reader.groups_as_tags();
     reader.entities_as_tags();
     Ok(reader.out.finish())
 }
@@ -267,13 +279,64 @@ impl Reader<'_> {
         self.node(number)
     }
 
+    /// `$PhysicalNames`: dimension, number and name of groups.
+    pub(crate) fn read_names(&mut self) -> Result<(), ReadError> {
+        self.need_line(1, "the number of names", 0)?;
+        let n = self.count("names")?;
+        for i in 0..n {
+            self.need_line(n, "names", i)?;
+            let (dim, number) = (self.integer("a dimension")?, self.integer("the number of a physical group")?);
+            let name = String::from_utf8_lossy(self.s.rest()).trim_matches('"').to_owned();
+            if name == UNTAGGED {
+                self.untagged.insert((dim, number));
+            } else if let 2 | 3 = dim {
+                self.groups[dim as usize - 2].set_name(number, &name);
+            }
+        }
+        self.close("PhysicalNames")
+    }
+
+    /// The combination of some physical groups of a dimension.
+    pub(crate) fn combination(&mut self, dim: i64, physical: &[i64]) -> Combination {
+        if dim != 2 && dim != 3 {
+            return NONE;
+        }
+        let groups = &mut self.groups[dim as usize - 2];
+        let named = physical.iter().filter(|&&number| number != 0 && !self.untagged.contains(&(dim, number)));
+        named.fold(NONE, |combination, &number| {
+            let group = groups.numbered(number);
+            groups.join(combination, group)
+        })
+    }
+
+    /// Faces and hexes get the tags of their groups.
+    fn groups_as_tags(&mut self) {
+        for (k, groups) in std::mem::take(&mut self.groups).iter().enumerate() {
+            let of_kind = |slot: Slot| matches!(slot, Slot::Hex(_)) == (k == 1);
+            let combinations: Vec<Combination> = self
+                .slots
+                .iter()
+                .zip(&self.combinations)
+                .map(|(&slot, &combination)| if of_kind(slot) { combination } else { NONE })
+                .collect();
+            self.out.tag_by_groups(&self.slots, &combinations, groups);
+        }
+    }
+
     /// Adds an element by its type.
-    pub(crate) fn add_element(&mut self, number: i64, element_type: i64, nodes: &[u32], tag: i64, entity: i64) {
+    pub(crate) fn add_element(
+        &mut self,
+        number: i64,
+        element_type: i64,
+        nodes: &[u32],
+        combination: Combination,
+        entity: i64,
+    ) {
         let slot = match (element_type, <[u32; 8]>::try_from(nodes)) {
-            (HEX, Ok(hex)) => self.out.hex(hex, tag),
-            (TRIANGLE | QUAD, _) => self.out.face(nodes, tag),
+            (HEX, Ok(hex)) => self.out.hex(hex, 0),
+            (TRIANGLE | QUAD, _) => self.out.face(nodes, 0),
             (TET | WEDGE | PYRAMID, _) => {
-                self.out.small_cell(nodes, tag);
+                self.out.small_cell(nodes, i64::from(combination != NONE));
                 Slot::Elsewhere
             }
             _ => {
@@ -287,6 +350,7 @@ impl Reader<'_> {
         };
         self.elements.push(number);
         self.slots.push(slot);
+        self.combinations.push(combination);
         self.entities.push(entity);
     }
 
@@ -316,7 +380,7 @@ impl Reader<'_> {
         }
     }
 
-    /// `$NodeData` or `$ElementData` (the same in both versions).
+    /// `$NodeData`, `$ElementData` or `$ElementNodeData` (the same in both versions); of the last the mean over the nodes is kept.
     pub(crate) fn read_data(&mut self, section: &str) -> Result<(), ReadError> {
         let mut name = String::new();
         let missing = "the tags of the data";
@@ -334,63 +398,80 @@ impl Reader<'_> {
             }
         }
         let [_, components, count] = header;
-        let limit = 1 << 20;
-        let (Ok(components), Ok(count)) = (u64::try_from(components), u64::try_from(count)) else {
-            return Err(self.s.malformed_text("counts in the data", "negative ones".to_owned(), "correct them"));
-        };
-        if components > limit || count > u64::from(u32::MAX) {
-            return Err(self.s.malformed_text("counts in the data", "enormous ones".to_owned(), "correct them"));
+        let limit = i64::from(u32::MAX);
+        if !(0..=limit).contains(&components) || !(0..=limit).contains(&count) {
+            let given = "negative or enormous ones".to_owned();
+            return Err(self.s.malformed_text("counts in the data", given, "correct them"));
         }
+        // Gmsh knows 1, 3 and 9 components.
+        let kept = usize::try_from(components).ok().filter(|c| (1..=9).contains(c)).unwrap_or(0);
         let on_nodes = section == "NodeData";
         let n = if on_nodes { self.out.point_count() } else { self.slots.len() };
-        let mut values: Vec<f64> = Vec::with_capacity(reserve(n as u64));
+        let mut values = vec![f64::NAN; n * kept];
         let mut filled = 0usize;
-        for i in 0..count {
-            let number;
-            let mut value = 0.0;
-            if let Some(reversed) = self.binary {
-                let mut four = [0; 4];
-                self.s.exact(&mut four, "more data")?;
-                number = i64::from(if reversed { i32::from_be_bytes(four) } else { i32::from_le_bytes(four) });
-                for _ in 0..components {
-                    let mut eight = [0; 8];
-                    self.s.exact(&mut eight, "more data")?;
-                    value = if reversed { f64::from_be_bytes(eight) } else { f64::from_le_bytes(eight) };
-                }
-            } else {
-                self.need_line(count, "values", i)?;
-                number = self.integer("a node or element number")?;
-                for _ in 0..components {
-                    let span = self.s.need_word("a value")?;
-                    value = self.s.number(span, "a value")?;
+        let mut mean = vec![0.0; kept];
+        let mut at_first = vec![0.0; kept];
+        for i in 0..count as u64 {
+            if self.binary.is_none() {
+                self.need_line(count as u64, "values", i)?;
+            }
+            let number = self.data_integer("a node or element number")?;
+            let nodes = if section == "ElementNodeData" { self.data_integer("a number of nodes")?.max(1) } else { 1 };
+            let mut alike = true;
+            mean.fill(0.0);
+            for node in 0..nodes {
+                for k in 0..components as usize {
+                    let value = self.data_value()?;
+                    if k >= kept {
+                        continue;
+                    }
+                    if node == 0 {
+                        at_first[k] = value;
+                    }
+                    alike &= value.to_bits() == at_first[k].to_bits();
+                    mean[k] += value / nodes as f64;
                 }
             }
+            // To the bit where the nodes agree.
+            let value = if alike { &at_first } else { &mean };
             let numbers = if on_nodes { &self.nodes } else { &self.elements };
             if let Some(position) = numbers.get(number) {
-                let position = position as usize;
-                if position >= values.len() {
-                    values.resize(n.max(position + 1), f64::NAN);
-                }
-                values[position] = value;
+                values[position as usize * kept..][..kept].copy_from_slice(value);
                 filled += 1;
             }
         }
         self.close(section)?;
-        if components != 1 {
+        if kept == 0 {
             self.out.note(format!("array `{name}` with {components} components is not kept"));
             return Ok(());
         }
-        values.resize(n, f64::NAN);
         if filled < n && name == "tag" {
             // Points that are not named have no tag.
             values.iter_mut().filter(|v| v.is_nan()).for_each(|v| *v = 0.0);
         }
         if on_nodes {
-            self.out.point_array(&name, &Values::Real(values));
+            self.out.point_array(&name, kept, &Values::Real(values));
         } else {
-            self.out.cell_array(&name, &Values::Real(values), &self.slots);
+            self.out.cell_array(&name, kept, &Values::Real(values), &self.slots);
         }
         Ok(())
+    }
+
+    fn data_integer(&mut self, what: &str) -> Result<i64, ReadError> {
+        let Some(reversed) = self.binary else { return self.integer(what) };
+        let mut four = [0; 4];
+        self.s.exact(&mut four, "more data")?;
+        Ok(i64::from(if reversed { i32::from_be_bytes(four) } else { i32::from_le_bytes(four) }))
+    }
+
+    fn data_value(&mut self) -> Result<f64, ReadError> {
+        let Some(reversed) = self.binary else {
+            let span = self.s.need_word("a value")?;
+            return self.s.number(span, "a value");
+        };
+        let mut eight = [0; 8];
+        self.s.exact(&mut eight, "more data")?;
+        Ok(if reversed { f64::from_be_bytes(eight) } else { f64::from_le_bytes(eight) })
     }
 
     pub(crate) fn skip_section(&mut self, name: &str) -> Result<(), ReadError> {
@@ -415,26 +496,187 @@ pub(crate) fn dimension(element_type: i64) -> u8 {
     if element_type == TRIANGLE || element_type == QUAD { 2 } else { 3 }
 }
 
+/// Name of the physical group of what has no tag, where all must have one.
+const UNTAGGED: &str = "untagged";
+
+/// The physical groups of a mesh, per dimension and tag.
+pub(crate) struct Physical {
+    /// Numbers of the groups of each tag.
+    numbers: BTreeMap<(u8, i64), Vec<i64>>,
+    /// Names of groups.
+    names: BTreeMap<(u8, i64), String>,
+}
+
+impl Physical {
+    /// A tag is a group of its number; a tag with several names is in a group for each of them, if `overlap` is possible,
+    /// otherwise its group has all the names. With `everywhere` what has no tag is in a group, too, where others have one:
+    /// meshio reads no mesh whose elements are partly in groups.
+    pub(crate) fn new(data: &MeshData, overlap: bool, everywhere: bool) -> Self {
+        let tags: std::collections::BTreeSet<(u8, i64)> =
+            elements(data).map(|(t, _, tag)| (dimension(t), tag)).collect();
+        let mut physical = Self { numbers: BTreeMap::new(), names: BTreeMap::new() };
+        // The group of a name is the tag that has no other name.
+        let mut group_of: BTreeMap<(u8, &str), i64> = BTreeMap::new();
+        let named = |dim: u8, tag: i64| {
+            let on = if dim == 2 { TagOn::Faces } else { TagOn::Cells };
+            data.tag_names.iter().filter(move |n| n.on == on && n.tag == tag).map(|n| n.name.as_str())
+        };
+        for &(dim, tag) in &tags {
+            let names: Vec<&str> = named(dim, tag).collect();
+            if let [name] = names[..]
+                && carried(name).is_none()
+            {
+                group_of.entry((dim, name)).or_insert(tag);
+            }
+            if !names.is_empty() && (names.len() == 1 || !overlap) {
+                physical.names.insert((dim, tag), names.join("+"));
+            }
+        }
+        let mut next = tags.iter().map(|&(_, tag)| tag).max().unwrap_or(0).max(0);
+        let mut fresh = || {
+            next += 1;
+            next
+        };
+        for &(dim, tag) in tags.iter().filter(|(_, tag)| *tag != 0) {
+            let names: Vec<&str> = named(dim, tag).collect();
+            let mut numbers = Vec::new();
+            // The number of the tag itself goes to the first name that has no other.
+            let mut own = Some(tag);
+            for name in names.into_iter().filter(|_| overlap) {
+                let number = || own.take().unwrap_or_else(&mut fresh);
+                numbers.push(carried(name).unwrap_or_else(|| *group_of.entry((dim, name)).or_insert_with(number)));
+            }
+            if numbers.is_empty() {
+                numbers.push(tag);
+            }
+            physical.numbers.insert((dim, tag), numbers);
+        }
+        for ((dim, name), number) in group_of {
+            physical.names.entry((dim, number)).or_insert_with(|| name.to_owned());
+        }
+        if everywhere && tags.iter().any(|&(_, tag)| tag != 0) {
+            for &(dim, _) in tags.iter().filter(|(_, tag)| *tag == 0) {
+                let number = fresh();
+                physical.numbers.insert((dim, 0), vec![number]);
+                physical.names.insert((dim, number), UNTAGGED.to_owned());
+            }
+        }
+        physical
+    }
+
+    /// The groups of a tag.
+    pub(crate) fn of(&self, dim: u8, tag: i64) -> &[i64] {
+        self.numbers.get(&(dim, tag)).map_or(&[], Vec::as_slice)
+    }
+
+    /// The section with the names.
+    pub(crate) fn write_names(&self, out: &mut dyn Write) -> io::Result<()> {
+        if self.names.is_empty() {
+            return Ok(());
+        }
+        writeln!(out, "$PhysicalNames\n{}", self.names.len())?;
+        for ((dim, number), name) in &self.names {
+            writeln!(out, "{dim} {number} \"{}\"", unquoted(name))?;
+        }
+        writeln!(out, "$EndPhysicalNames")
+    }
+}
+
+/// How numbers on elements are written.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Layout {
+    /// One value for each element of the mesh.
+    Elements,
+    /// One value for each node of the elements that have any. meshio 5.3.5 passes this over; it reads no file of version 2.2 with
+    /// `$ElementData` if there are several kinds of elements.
+    NodesOfElements,
+}
+
 /// The data sections at the end of a file.
-pub(crate) fn write_data(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
+pub(crate) fn write_data(out: &mut dyn Write, data: &MeshData, several_kinds: Layout) -> io::Result<()> {
     if let Some(tags) = &data.point_tags {
         let values: Vec<f64> = tags.iter().map(|&t| t as f64).collect();
-        write_array(out, "NodeData", "tag", 1, &values)?;
+        write_on_points(out, "tag", &[&values])?;
     }
-    for (name, values) in &data.point_data {
-        write_array(out, "NodeData", name, 1, values)?;
+    for (name, columns) in arrays::on_points(data) {
+        for (name, columns) in as_gmsh_has_them(name, columns) {
+            write_on_points(out, &name, &columns)?;
+        }
     }
-    for (name, values) in &data.hex_data {
-        write_array(out, "ElementData", name, data.face_count() + 1, values)?;
+    let mut types = elements(data).map(|(element_type, ..)| element_type);
+    let first = types.next();
+    let layout = if types.all(|t| Some(t) == first) { Layout::Elements } else { several_kinds };
+    for (name, columns) in arrays::on_cells(data) {
+        for (name, columns) in as_gmsh_has_them(name, columns) {
+            match layout {
+                Layout::Elements => write_on_elements(out, data, &name, &columns)?,
+                Layout::NodesOfElements => write_on_nodes_of_elements(out, data, &name, &columns)?,
+            }
+        }
     }
     Ok(())
 }
 
-fn write_array(out: &mut dyn Write, section: &str, name: &str, first: usize, values: &[f64]) -> io::Result<()> {
-    // One text, one time, three numbers: time step, components, count.
-    writeln!(out, "${section}\n1\n\"{}\"\n1\n0.0\n3\n0\n1\n{}", unquoted(name), values.len())?;
-    for (i, &value) in values.iter().enumerate() {
-        writeln!(out, "{} {}", first + i, Real(value))?;
+/// Arrays of other than 1, 3 or 9 components are written component by component.
+fn as_gmsh_has_them<T: Copy>(name: &str, columns: Vec<T>) -> Vec<(String, Vec<T>)> {
+    match columns.len() {
+        1 | 3 | 9 => vec![(name.to_owned(), columns)],
+        _ => columns.iter().enumerate().map(|(k, &column)| (component(name, k), vec![column])).collect(),
     }
-    writeln!(out, "$End{section}")
+}
+
+fn begin(out: &mut dyn Write, section: &str, name: &str, components: usize, n: usize) -> io::Result<()> {
+    // One text, one time, three numbers: time step, components, count.
+    writeln!(out, "${section}\n1\n\"{}\"\n1\n0.0\n3\n0\n{components}\n{n}", unquoted(name))
+}
+
+fn write_on_points(out: &mut dyn Write, name: &str, columns: &[&[f64]]) -> io::Result<()> {
+    let n = columns[0].len();
+    begin(out, "NodeData", name, columns.len(), n)?;
+    for i in 0..n {
+        write!(out, "{}", i + 1)?;
+        for column in columns {
+            write!(out, " {}", Real(column[i]))?;
+        }
+        out.write_all(b"\n")?;
+    }
+    writeln!(out, "$EndNodeData")
+}
+
+fn write_on_elements(out: &mut dyn Write, data: &MeshData, name: &str, columns: &[CellColumn<'_>]) -> io::Result<()> {
+    let n = data.face_count() + data.cell_count();
+    begin(out, "ElementData", name, columns.len(), n)?;
+    let mut values: Vec<_> = columns.iter().map(|c| c.all()).collect();
+    for i in 0..n {
+        write!(out, "{}", i + 1)?;
+        for column in &mut values {
+            write!(out, " {}", Real(column.next().unwrap_or(f64::NAN)))?;
+        }
+        out.write_all(b"\n")?;
+    }
+    writeln!(out, "$EndElementData")
+}
+
+fn write_on_nodes_of_elements(
+    out: &mut dyn Write,
+    data: &MeshData,
+    name: &str,
+    columns: &[CellColumn<'_>],
+) -> io::Result<()> {
+    let on = columns.iter().map(|c| c.on()).fold((false, false), |a, b| (a.0 || b.0, a.1 || b.1));
+    let n = data.quads.len() * usize::from(on.0) + data.hexes.len() * usize::from(on.1);
+    begin(out, "ElementNodeData", name, columns.len(), n)?;
+    let mut values: Vec<_> = columns.iter().map(|c| c.all()).collect();
+    for (i, (element_type, nodes, _)) in elements(data).enumerate() {
+        let value: Vec<Real> = values.iter_mut().map(|v| Real(v.next().unwrap_or(f64::NAN))).collect();
+        if !(element_type == QUAD && on.0 || element_type == HEX && on.1) {
+            continue;
+        }
+        write!(out, "{} {}", i + 1, nodes.len())?;
+        for component in nodes.iter().flat_map(|_| &value) {
+            write!(out, " {component}")?;
+        }
+        out.write_all(b"\n")?;
+    }
+    writeln!(out, "$EndElementNodeData")
 }

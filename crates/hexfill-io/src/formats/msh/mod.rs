@@ -2,6 +2,7 @@
 //! and a note says what it was taken for.
 //!
 //! Tags are Gmsh's physical groups. Where a file has none, the elementary entities take their place if there are several.
+//! A tag with several names is in several physical groups; version 2.2, whose elements have one group, joins the names with `+`.
 //! Tags of points, which Gmsh does not know, are written as node data named `tag`.
 
 mod common;

@@ -1,8 +1,9 @@
 //! MSH 2.2: nodes with numbers, elements with numbers and two tags (physical group, elementary entity).
 
-use super::common::{Reader, dimension, elements, nodes_of, write_data};
+use super::common::{Layout, Physical, Reader, dimension, elements, nodes_of, write_data};
 use crate::data::MeshData;
 use crate::error::ReadError;
+use crate::groups::Combination;
 use crate::source::reserve;
 use crate::write::{write_indices, write_point};
 use std::collections::BTreeMap;
@@ -20,7 +21,8 @@ pub(crate) fn sections(r: &mut Reader<'_>) -> Result<(), ReadError> {
                 r.refuse_repetition("Elements")?;
                 read_elements(r)?;
             }
-            "NodeData" | "ElementData" => r.read_data(&name)?,
+            "PhysicalNames" => r.read_names()?,
+            "NodeData" | "ElementData" | "ElementNodeData" => r.read_data(&name)?,
             _ => r.skip_section(&name)?,
         }
     }
@@ -103,9 +105,15 @@ fn read_elements(r: &mut Reader<'_>) -> Result<(), ReadError> {
             }
             None => {} // a type of higher order: the line is passed over
         }
-        r.add_element(number, element_type, &nodes, tags[0], tags[1]);
+        let combination = group(r, element_type, tags[0]);
+        r.add_element(number, element_type, &nodes, combination, tags[1]);
     }
     r.close("Elements")
+}
+
+/// The physical group of an element, by its number.
+fn group(r: &mut Reader<'_>, element_type: i64, number: i64) -> Combination {
+    r.combination(i64::from(dimension(element_type)), &[number])
 }
 
 fn read_binary_elements(r: &mut Reader<'_>, n: u64, reversed: bool) -> Result<(), ReadError> {
@@ -134,7 +142,8 @@ fn read_binary_elements(r: &mut Reader<'_>, n: u64, reversed: bool) -> Result<()
                 let number = int(r, reversed, &missing)?;
                 nodes.push(r.node(number)?);
             }
-            r.add_element(number, element_type, &nodes, tags[0], tags[1]);
+            let combination = group(r, element_type, tags[0]);
+            r.add_element(number, element_type, &nodes, combination, tags[1]);
             done += 1;
         }
     }
@@ -142,7 +151,9 @@ fn read_binary_elements(r: &mut Reader<'_>, n: u64, reversed: bool) -> Result<()
 }
 
 pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
-    writeln!(out, "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{}", data.points.len())?;
+    writeln!(out, "$MeshFormat\n2.2 0 8\n$EndMeshFormat")?;
+    Physical::new(data, false, false).write_names(out)?;
+    writeln!(out, "$Nodes\n{}", data.points.len())?;
     for (i, point) in data.points.iter().enumerate() {
         write!(out, "{} ", i + 1)?;
         write_point(out, point, " ")?;
@@ -164,5 +175,5 @@ pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
         out.write_all(b"\n")?;
     }
     writeln!(out, "$EndElements")?;
-    write_data(out, data)
+    write_data(out, data, Layout::NodesOfElements)
 }

@@ -1,6 +1,6 @@
 //! MSH 4.1: nodes and elements in blocks, each block on an entity; entities carry the physical groups.
 
-use super::common::{Reader, dimension, elements, nodes_of, write_data};
+use super::common::{Layout, Physical, Reader, dimension, elements, nodes_of, write_data};
 use crate::data::MeshData;
 use crate::error::ReadError;
 use crate::source::reserve;
@@ -9,8 +9,8 @@ use rustc_hash::FxHashMap;
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 
-/// Physical group of each entity (dimension, number).
-type Groups = FxHashMap<(i64, i64), i64>;
+/// Physical groups of each entity (dimension, number).
+type Groups = FxHashMap<(i64, i64), Vec<i64>>;
 
 pub(crate) fn sections(r: &mut Reader<'_>) -> Result<(), ReadError> {
     let mut groups = Groups::default();
@@ -26,7 +26,11 @@ pub(crate) fn sections(r: &mut Reader<'_>) -> Result<(), ReadError> {
                 r.refuse_repetition("Elements")?;
                 read_elements(r, &groups)?;
             }
-            "NodeData" | "ElementData" => r.read_data(&name)?,
+            "PhysicalNames" => {
+                r.s.set_binary(false);
+                r.read_names()?;
+            }
+            "NodeData" | "ElementData" | "ElementNodeData" => r.read_data(&name)?,
             "PartitionedEntities" => {
                 r.out.note("the mesh is partitioned: physical groups of partitions are not read");
                 r.skip_section(&name)?;
@@ -104,13 +108,9 @@ fn read_entities(r: &mut Reader<'_>, groups: &mut Groups) -> Result<(), ReadErro
             for _ in 0..if dim == 0 { 3 } else { 6 } {
                 real(r, "a coordinate of the box")?;
             }
-            for k in 0..count(r, "physical groups")? {
+            for _ in 0..count(r, "physical groups")? {
                 let group = int(r, "a physical group")?;
-                if k == 0 {
-                    groups.insert((dim, number), group);
-                } else {
-                    r.out.ignore("second physical groups of an entity");
-                }
+                groups.entry((dim, number)).or_default().push(group);
             }
             if dim > 0 {
                 for _ in 0..count(r, "bounding entities")? {
@@ -183,7 +183,7 @@ fn read_elements(r: &mut Reader<'_>, groups: &Groups) -> Result<(), ReadError> {
             let given = element_type.to_string();
             return Err(r.s.malformed_text("an element type of Gmsh", given, "correct the header of the block"));
         }
-        let tag = groups.get(&(dim, entity)).copied().unwrap_or(0);
+        let combination = r.combination(dim, groups.get(&(dim, entity)).map_or(&[], Vec::as_slice));
         for i in 0..in_block {
             line(r, in_block, "elements of the block", i)?;
             let number = size(r, "an element number")?;
@@ -199,7 +199,7 @@ fn read_elements(r: &mut Reader<'_>, groups: &Groups) -> Result<(), ReadError> {
                 let expected = format!("{} nodes for element type {element_type}", nodes.len());
                 return Err(r.s.malformed(expected, span, "correct the header of the block"));
             }
-            r.add_element(number, element_type, &nodes, tag, entity);
+            r.add_element(number, element_type, &nodes, combination, entity);
         }
     }
     let found = r.slots.len() as u64;
@@ -211,6 +211,8 @@ fn read_elements(r: &mut Reader<'_>, groups: &Groups) -> Result<(), ReadError> {
 
 pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
     writeln!(out, "$MeshFormat\n4.1 0 8\n$EndMeshFormat")?;
+    let physical = Physical::new(data, true, true);
+    physical.write_names(out)?;
     // One entity for each tag of each dimension, numbered from 1 in each dimension.
     let mut entities: BTreeMap<(u8, i64), usize> =
         elements(data).map(|(element_type, _, tag)| ((dimension(element_type), tag), 0)).collect();
@@ -237,13 +239,18 @@ pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
         }
     }
     writeln!(out, "$Entities\n0 0 {} {}", last[2], last[3])?;
-    for ((_, tag), entity) in &entities {
+    for ((dim, tag), entity) in &entities {
         write!(out, "{entity}")?;
         for x in low.iter().chain(&high) {
             write!(out, " {}", Real(*x))?;
         }
         // Groups, then bounding entities (none).
-        if *tag == 0 { writeln!(out, " 0 0")? } else { writeln!(out, " 1 {tag} 0")? }
+        let groups = physical.of(*dim, *tag);
+        write!(out, " {}", groups.len())?;
+        for group in groups {
+            write!(out, " {group}")?;
+        }
+        writeln!(out, " 0")?;
     }
     let n = data.points.len();
     writeln!(out, "$EndEntities\n$Nodes\n{} {n} {} {n}", usize::from(n > 0), usize::from(n > 0))?;
@@ -279,5 +286,5 @@ pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
         }
     }
     writeln!(out, "$EndElements")?;
-    write_data(out, data)
+    write_data(out, data, Layout::Elements)
 }

@@ -91,10 +91,3 @@ pub(crate) fn all(data: &MeshData) -> impl Iterator<Item = (u8, &[u32], i64)> {
     let pyramids = data.pyramids.iter().map(|c| (PYRAMID, c.as_slice(), 0));
     faces.chain(hexes).chain(tets).chain(wedges).chain(pyramids)
 }
-
-/// The values of a hex array for all cells in the order of [`all`]; NaN where there is none.
-pub(crate) fn spread<'a>(data: &'a MeshData, values: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
-    let before = std::iter::repeat_n(f64::NAN, data.face_count());
-    let after = std::iter::repeat_n(f64::NAN, data.cell_count() - data.hexes.len());
-    before.chain(values.iter().copied()).chain(after)
-}

@@ -5,6 +5,7 @@ use crate::assembly::{Assembly, Slot, Values};
 use crate::data::MeshData;
 use crate::error::{ReadError, snippet};
 use crate::source::{Source, reserve};
+use crate::write::decode_name;
 
 /// Cells as the file lists them: cell `i` has the nodes `nodes[ends[i - 1]..ends[i]]`.
 #[derive(Default)]
@@ -505,15 +506,12 @@ impl Reader<'_> {
     }
 
     fn keep(&mut self, name: &str, components: u64, values: &Values) {
-        if self.on == On::Nothing {
-            return; // data of the file as a whole, such as the time
-        }
-        if components != 1 {
-            self.out.note(format!("array `{name}` with {components} components is not kept"));
-        } else if self.on == On::Points {
-            self.out.point_array(name, values);
-        } else {
-            self.out.cell_array(name, values, &self.slots);
+        let components = usize::try_from(components).unwrap_or(usize::MAX);
+        match self.on {
+            // Data of the file as a whole, such as the time.
+            On::Nothing => self.out.field(name, components, values),
+            On::Points => self.out.point_array(name, components, values),
+            On::Cells => self.out.cell_array(name, components, values, &self.slots),
         }
     }
 
@@ -526,24 +524,4 @@ impl Reader<'_> {
         }
         Ok(())
     }
-}
-
-/// Undoes the %20 of array names.
-fn decode_name(text: &[u8]) -> String {
-    let mut bytes = Vec::with_capacity(text.len());
-    let mut i = 0;
-    while i < text.len() {
-        let hex = text.get(i + 1..i + 3).and_then(|h| std::str::from_utf8(h).ok());
-        match hex.filter(|_| text[i] == b'%').and_then(|h| u8::from_str_radix(h, 16).ok()) {
-            Some(byte) => {
-                bytes.push(byte);
-                i += 3;
-            }
-            None => {
-                bytes.push(text[i]);
-                i += 1;
-            }
-        }
-    }
-    String::from_utf8_lossy(&bytes).into_owned()
 }

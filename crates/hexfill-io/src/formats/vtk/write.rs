@@ -1,8 +1,10 @@
-//! Writing legacy VTK, version 3.0: always an unstructured grid, faces first, then hexes and the other cells.
+//! Writing legacy VTK, version 3.0: always an unstructured grid, faces first, then hexes and the other cells. Names of tags are
+//! field data: for each name its tags and the dimensions of what they are on.
 
 use super::cells;
+use crate::arrays::{self, component};
 use crate::data::MeshData;
-use crate::write::{Real, has_cell_tags, write_indices, write_point};
+use crate::write::{Real, encode_name, has_cell_tags, write_indices, write_point};
 use std::io::{self, Write};
 
 pub(crate) fn write(out: &mut dyn Write, data: &MeshData, binary: bool) -> io::Result<()> {
@@ -41,38 +43,74 @@ pub(crate) fn write(out: &mut dyn Write, data: &MeshData, binary: bool) -> io::R
         whole(out, i64::from(cell_type), false, binary)?;
     }
     end(out, binary)?;
-    if has_cell_tags(data) || !data.hex_data.is_empty() {
+    // Gmsh wants the points right after the dataset; here it passes over fields.
+    write_names(out, data, binary)?;
+    let arrays = arrays::on_cells(data);
+    if has_cell_tags(data) || !arrays.is_empty() {
         writeln!(out, "CELL_DATA {n}")?;
     }
     if has_cell_tags(data) {
-        let wide = cells::all(data).any(|(_, _, tag)| i32::try_from(tag).is_err());
-        begin(out, "tag", if wide { "long" } else { "int" })?;
-        for (_, _, tag) in cells::all(data) {
-            whole(out, tag, wide, binary)?;
-        }
-        end(out, binary)?;
+        write_tags(out, cells::all(data).map(|(_, _, tag)| tag).collect(), binary)?;
     }
-    for (name, values) in &data.hex_data {
-        begin(out, name, "double")?;
-        for value in cells::spread(data, values) {
-            real(out, value, binary)?;
-        }
-        end(out, binary)?;
+    for (name, columns) in arrays {
+        write_array(out, name, columns.into_iter().map(|c| c.all().collect()).collect(), binary)?;
     }
-    if data.point_tags.is_some() || !data.point_data.is_empty() {
+    let arrays = arrays::on_points(data);
+    if data.point_tags.is_some() || !arrays.is_empty() {
         writeln!(out, "POINT_DATA {}", data.points.len())?;
     }
     if let Some(tags) = &data.point_tags {
-        let wide = tags.iter().any(|&t| i32::try_from(t).is_err());
-        begin(out, "tag", if wide { "long" } else { "int" })?;
-        for &tag in tags {
-            whole(out, tag, wide, binary)?;
+        write_tags(out, tags.clone(), binary)?;
+    }
+    for (name, columns) in arrays {
+        write_array(out, name, columns.into_iter().map(<[f64]>::to_vec).collect(), binary)?;
+    }
+    Ok(())
+}
+
+fn write_names(out: &mut dyn Write, data: &MeshData, binary: bool) -> io::Result<()> {
+    let fields = data.names_as_fields();
+    if fields.is_empty() {
+        return Ok(());
+    }
+    writeln!(out, "FIELD FieldData {}", fields.len())?;
+    let wide = data.tag_names.iter().any(|n| i32::try_from(n.tag).is_err());
+    for (name, rows) in fields {
+        writeln!(out, "{} 2 {} {}", encode_name(name), rows.len(), if wide { "long" } else { "int" })?;
+        for value in rows.into_iter().flatten() {
+            whole(out, value, wide, binary)?;
         }
         end(out, binary)?;
     }
-    for (name, values) in &data.point_data {
-        begin(out, name, "double")?;
-        for &value in values {
+    Ok(())
+}
+
+fn write_tags(out: &mut dyn Write, tags: Vec<i64>, binary: bool) -> io::Result<()> {
+    let wide = tags.iter().any(|&t| i32::try_from(t).is_err());
+    begin(out, "tag", if wide { "long" } else { "int" })?;
+    for tag in tags {
+        whole(out, tag, wide, binary)?;
+    }
+    end(out, binary)
+}
+
+/// Three components are a vector, any other number is written component by component.
+fn write_array(out: &mut dyn Write, name: &str, columns: Vec<Vec<f64>>, binary: bool) -> io::Result<()> {
+    if let [x, y, z] = columns.as_slice() {
+        writeln!(out, "VECTORS {} double", encode_name(name))?;
+        for ((&x, &y), &z) in x.iter().zip(y).zip(z) {
+            if binary {
+                [x, y, z].into_iter().try_for_each(|value| real(out, value, true))?;
+            } else {
+                writeln!(out, "{} {} {}", Real(x), Real(y), Real(z))?;
+            }
+        }
+        return end(out, binary);
+    }
+    let several = columns.len() > 1;
+    for (k, values) in columns.into_iter().enumerate() {
+        begin(out, &if several { component(name, k) } else { name.to_owned() }, "double")?;
+        for value in values {
             real(out, value, binary)?;
         }
         end(out, binary)?;
@@ -98,16 +136,4 @@ fn whole(out: &mut dyn Write, value: i64, wide: bool, binary: bool) -> io::Resul
 
 fn real(out: &mut dyn Write, value: f64, binary: bool) -> io::Result<()> {
     if binary { out.write_all(&value.to_be_bytes()) } else { writeln!(out, "{}", Real(value)) }
-}
-
-/// Names are one word: VTK writes %20 for a blank.
-fn encode_name(name: &str) -> String {
-    let mut word = String::new();
-    for &byte in name.as_bytes() {
-        match byte {
-            b'%' | b'"' | 0..=32 | 127.. => word.push_str(&format!("%{byte:02X}")),
-            _ => word.push(char::from(byte)),
-        }
-    }
-    if word.is_empty() { "unnamed".to_owned() } else { word }
 }

@@ -13,6 +13,7 @@ use quick_xml::{Reader, XmlVersion};
 /// Where an array stands in a piece.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Section {
+    FieldData,
     Points,
     PointData,
     CellData,
@@ -26,6 +27,7 @@ enum Section {
 impl Section {
     fn from_name(name: &str) -> Option<Self> {
         Some(match name {
+            "FieldData" => Self::FieldData,
             "Points" => Self::Points,
             "PointData" => Self::PointData,
             "CellData" => Self::CellData,
@@ -179,8 +181,11 @@ pub(crate) fn read(mut source: Source<'_>) -> Result<MeshData, ReadError> {
     if cut < bytes.len() {
         file.appended = Some(appended(&file, cut)?);
     }
-    let pieces = parse(&mut file, text)?;
+    let (pieces, fields) = parse(&mut file, text)?;
     let mut out = Assembly::default();
+    for field in fields.iter().filter(|f| Scalar::from_xml_name(&f.scalar).is_some_and(Scalar::is_whole)) {
+        out.field(&field.name, field.components as usize, &file.values(field)?);
+    }
     let several = pieces.len() > 1;
     for piece in &pieces {
         add_piece(&file, piece, several, &mut out)?;
@@ -218,10 +223,11 @@ fn attribute(element: &BytesStart<'_>, name: &str) -> Option<String> {
     attribute.normalized_value(XmlVersion::Implicit1_0).ok().map(std::borrow::Cow::into_owned)
 }
 
-/// Reads the XML: sets the layout and collects the pieces with their arrays.
-fn parse<'a>(file: &mut File<'_>, text: &'a str) -> Result<Vec<Piece<'a>>, ReadError> {
+/// Reads the XML: sets the layout and collects the pieces with their arrays, and the arrays of the file as a whole.
+fn parse<'a>(file: &mut File<'_>, text: &'a str) -> Result<(Vec<Piece<'a>>, Vec<Array<'a>>), ReadError> {
     let mut xml = Reader::from_str(text);
     let mut pieces: Vec<Piece<'a>> = Vec::new();
+    let mut fields: Vec<Array<'a>> = Vec::new();
     let mut section = None;
     let mut in_piece = false;
     let mut array: Option<Array<'a>> = None;
@@ -243,11 +249,11 @@ fn parse<'a>(file: &mut File<'_>, text: &'a str) -> Result<Vec<Piece<'a>>, ReadE
             Event::End(e) => {
                 depth = depth.saturating_sub(1);
                 match e.name().as_ref() {
-                    "DataArray" => {
-                        if let (Some(done), Some(piece)) = (array.take(), pieces.last_mut()) {
-                            piece.arrays.push(done);
-                        }
-                    }
+                    "DataArray" => match (array.take(), pieces.last_mut()) {
+                        (Some(done), _) if done.section == Section::FieldData => fields.push(done),
+                        (Some(done), Some(piece)) => piece.arrays.push(done),
+                        _ => {}
+                    },
                     "Piece" => in_piece = false,
                     name if Section::from_name(name).is_some() => section = None,
                     _ => {}
@@ -301,7 +307,8 @@ fn parse<'a>(file: &mut File<'_>, text: &'a str) -> Result<Vec<Piece<'a>>, ReadE
                 let (points, cells) = (count("NumberOfPoints")?, count("NumberOfCells")?);
                 pieces.push(Piece { points, cells, arrays: Vec::new(), start });
             }
-            "DataArray" if in_piece => {
+            "FieldData" => section = (!empty).then_some(Section::FieldData),
+            "DataArray" if in_piece || section == Some(Section::FieldData) => {
                 let Some(section) = section else { continue };
                 let parsed = Array {
                     section,
@@ -314,6 +321,7 @@ fn parse<'a>(file: &mut File<'_>, text: &'a str) -> Result<Vec<Piece<'a>>, ReadE
                     start,
                 };
                 match pieces.last_mut() {
+                    _ if empty && !in_piece => {}
                     Some(piece) if empty => piece.arrays.push(parsed),
                     _ => (array, array_depth) = (Some(parsed), depth),
                 }
@@ -328,7 +336,7 @@ fn parse<'a>(file: &mut File<'_>, text: &'a str) -> Result<Vec<Piece<'a>>, ReadE
     if pieces.is_empty() {
         return Err(file.malformed(0, "a `<Piece>`", "none", "is this a VTK XML file? name the format otherwise"));
     }
-    Ok(pieces)
+    Ok((pieces, fields))
 }
 
 fn read_root(file: &mut File<'_>, element: &BytesStart<'_>, start: usize) -> Result<(), ReadError> {
@@ -446,16 +454,16 @@ fn add_piece(file: &File<'_>, piece: &Piece<'_>, several: bool, out: &mut Assemb
         }
     }
     for array in piece.arrays.iter().filter(|a| matches!(a.section, Section::PointData | Section::CellData)) {
-        if several || array.components != 1 || Scalar::from_xml_name(&array.scalar).is_none() {
-            let why = if several { "the file has several pieces" } else { "it has several components or is text" };
+        if several || Scalar::from_xml_name(&array.scalar).is_none() {
+            let why = if several { "the file has several pieces" } else { "it is text" };
             out.note(format!("array `{}` is not kept: {why}", array.name));
             continue;
         }
         let values = file.values(array)?;
         if array.section == Section::PointData {
-            out.point_array(&array.name, &values);
+            out.point_array(&array.name, array.components as usize, &values);
         } else {
-            out.cell_array(&array.name, &values, &slots);
+            out.cell_array(&array.name, array.components as usize, &values, &slots);
         }
     }
     Ok(())

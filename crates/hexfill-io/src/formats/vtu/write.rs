@@ -1,5 +1,7 @@
-//! Writing `.vtu`: one piece, arrays as ASCII (one point, one cell a line) or base64 in place.
+//! Writing `.vtu`: one piece, arrays as ASCII (one point, one cell a line) or base64 in place. Names of tags are field data: for
+//! each name its tags and the dimensions of what they are on.
 
+use crate::arrays;
 use crate::data::MeshData;
 use crate::formats::vtk::cells;
 use crate::write::{Real, has_cell_tags, write_indices, write_point};
@@ -14,7 +16,9 @@ pub(crate) fn write(out: &mut dyn Write, data: &MeshData, binary: bool) -> io::R
         out,
         "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">"
     )?;
-    writeln!(out, "<UnstructuredGrid>\n<Piece NumberOfPoints=\"{n_points}\" NumberOfCells=\"{n_cells}\">")?;
+    writeln!(out, "<UnstructuredGrid>")?;
+    write_names(out, data)?;
+    writeln!(out, "<Piece NumberOfPoints=\"{n_points}\" NumberOfCells=\"{n_cells}\">")?;
     writeln!(out, "<Points>")?;
     let coordinates = data.points.iter().flatten();
     if binary {
@@ -55,20 +59,22 @@ pub(crate) fn write(out: &mut dyn Write, data: &MeshData, binary: bool) -> io::R
     if let Some(tags) = &data.point_tags {
         wholes(out, "Int64", "tag", n_points, tags.iter().copied(), binary)?;
     }
-    for (name, values) in &data.point_data {
-        reals(out, name, n_points, values.iter().copied(), binary)?;
+    for (name, columns) in arrays::on_points(data) {
+        let values = columns.into_iter().map(|v| v.iter().copied()).collect();
+        reals(out, name, n_points, values, binary)?;
     }
     writeln!(out, "</PointData>\n<CellData>")?;
     if has_cell_tags(data) {
         wholes(out, "Int64", "tag", n_cells, cells::all(data).map(|(_, _, tag)| tag), binary)?;
     }
-    for (name, values) in &data.hex_data {
-        reals(out, name, n_cells, cells::spread(data, values), binary)?;
+    for (name, columns) in arrays::on_cells(data) {
+        reals(out, name, n_cells, columns.into_iter().map(|c| c.all()).collect(), binary)?;
     }
     writeln!(out, "</CellData>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>")
 }
 
-fn begin(out: &mut dyn Write, scalar: &str, name: &str, components: u32, format: &str) -> io::Result<()> {
+/// A name as the value of an attribute.
+fn escaped(name: &str) -> String {
     let mut escaped = String::new();
     for c in name.chars() {
         match c {
@@ -80,6 +86,11 @@ fn begin(out: &mut dyn Write, scalar: &str, name: &str, components: u32, format:
             c => escaped.push(c),
         }
     }
+    escaped
+}
+
+fn begin(out: &mut dyn Write, scalar: &str, name: &str, components: u32, format: &str) -> io::Result<()> {
+    let escaped = escaped(name);
     writeln!(
         out,
         "<DataArray type=\"{scalar}\" Name=\"{escaped}\" NumberOfComponents=\"{components}\" format=\"{format}\">"
@@ -129,13 +140,45 @@ fn wholes(
     end(out)
 }
 
-fn reals(out: &mut dyn Write, name: &str, n: usize, items: impl Iterator<Item = f64>, binary: bool) -> io::Result<()> {
+/// An array of components given side by side, written value by value.
+fn reals(
+    out: &mut dyn Write,
+    name: &str,
+    n: usize,
+    mut columns: Vec<impl Iterator<Item = f64>>,
+    binary: bool,
+) -> io::Result<()> {
+    let components = columns.len();
+    let mut row = || columns.iter_mut().map(|c| c.next().unwrap_or(f64::NAN)).collect::<Vec<f64>>();
     if binary {
-        return array(out, "Float64", name, 1, 8 * n, items.map(f64::to_le_bytes));
+        let values = (0..n).flat_map(|_| row()).map(f64::to_le_bytes);
+        return array(out, "Float64", name, components as u32, 8 * n * components, values);
     }
-    begin(out, "Float64", name, 1, "ascii")?;
-    for item in items {
-        writeln!(out, "{}", Real(item))?;
+    begin(out, "Float64", name, components as u32, "ascii")?;
+    for _ in 0..n {
+        let words: Vec<String> = row().into_iter().map(|x| Real(x).to_string()).collect();
+        writeln!(out, "{}", words.join(" "))?;
     }
     end(out)
+}
+
+fn write_names(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
+    let fields = data.names_as_fields();
+    if fields.is_empty() {
+        return Ok(());
+    }
+    writeln!(out, "<FieldData>")?;
+    for (name, rows) in fields {
+        let name = escaped(name);
+        let n = rows.len();
+        writeln!(
+            out,
+            "<DataArray type=\"Int64\" Name=\"{name}\" NumberOfComponents=\"2\" NumberOfTuples=\"{n}\" format=\"ascii\">"
+        )?;
+        for [tag, dimension] in rows {
+            writeln!(out, "{tag} {dimension}")?;
+        }
+        end(out)?;
+    }
+    writeln!(out, "</FieldData>")
 }
