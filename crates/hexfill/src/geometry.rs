@@ -257,7 +257,7 @@ impl Placed {
     fn volume_ratio(&self) -> Option<f64> {
         let volumes = || self.cells.iter().map(|c| c.volume);
         let (least, most) = (volumes().fold(f64::INFINITY, f64::min), volumes().fold(0.0, f64::max));
-        (least > 0.0 && (most / least).is_finite()).then_some(most / least)
+        (!self.cells.is_empty() && least > 0.0 && (most / least).is_finite()).then_some(most / least)
     }
 
     /// Placements with fewer hexes that are not certified rank higher, then those with a larger worst scaled Jacobian.

@@ -11,8 +11,20 @@ use crate::problem::{Problem, ProblemError};
 use hexfill_check::{Judged, Level, judge};
 use hexfill_geometry::{Vector, cone, cross, direction, dot, halves, holders, midpoint, sub};
 use hexfill_io::MeshData;
-use hexfill_mesh::{Context, Forest, HexMesh, Offenders, QuadId, StopReason, cube};
+use hexfill_mesh::{Context, Edge, Forest, HexMesh, Offenders, QuadId, StopReason, VertexId, cube, id_type};
 use std::collections::BTreeMap;
+
+id_type!(
+    /// A side of a face: twice its number in front of it (where its normal points), one more behind it.
+    Side,
+    "s"
+);
+
+impl Side {
+    fn of(quad: u32, behind: bool) -> Self {
+        Self(2 * quad + u32::from(behind))
+    }
+}
 
 /// One region: a problem of its own.
 #[derive(Clone, Debug)]
@@ -37,7 +49,7 @@ pub enum RegionsError {
         /// The input.
         name: String,
         /// The edges.
-        edges: Offenders<hexfill_mesh::Edge>,
+        edges: Offenders<Edge>,
     },
     /// A face with the same region on both sides.
     #[error("{name}: {} faces have the same region on both sides: {quads}; remove them, or close the walls they belong to", quads.count)]
@@ -167,15 +179,15 @@ fn shells(name: &str, walls: &[[u32; 4]], points: &[Vector]) -> Result<Vec<Vec<u
             edges.entry([a.min(b), a.max(b)]).or_default().push((q, a < b));
         }
     }
-    let open: Offenders<hexfill_mesh::Edge> = edges
+    let open: Offenders<Edge> = edges
         .iter()
         .filter(|(_, quads)| quads.len() < 2)
-        .map(|(&[a, b], _)| hexfill_mesh::Edge(hexfill_mesh::VertexId(a), hexfill_mesh::VertexId(b)))
+        .map(|(&[a, b], _)| Edge(VertexId(a), VertexId(b)))
         .collect();
     if !open.is_empty() {
         return Err(RegionsError::Open { name: name.to_owned(), edges: open });
     }
-    let mut forest = Forest::new(2 * walls.len());
+    let mut forest: Forest<Side> = Forest::new(2 * walls.len());
     for (&[a, b], quads) in &edges {
         let mut round: Vec<(f64, u32, bool)> =
             quads.iter().map(|&(q, along)| (angle(walls[q as usize], [a, b], points), q, along)).collect();
@@ -183,12 +195,12 @@ fn shells(name: &str, walls: &[[u32; 4]], points: &[Vector]) -> Result<Vec<Vec<u
         for (i, &(_, p, along)) in round.iter().enumerate() {
             let (_, q, next_along) = round[(i + 1) % round.len()];
             // A quad along the edge has growing angles before it.
-            forest.union(2 * p as usize + usize::from(!along), 2 * q as usize + usize::from(next_along));
+            forest.union(Side::of(p, !along), Side::of(q, next_along));
         }
     }
-    let mut shells: BTreeMap<usize, Vec<u32>> = BTreeMap::new();
-    for side in 0..2 * walls.len() {
-        shells.entry(forest.find(side)).or_default().push(side as u32);
+    let mut shells: BTreeMap<Side, Vec<u32>> = BTreeMap::new();
+    for side in 0..2 * walls.len() as u32 {
+        shells.entry(forest.find(Side(side))).or_default().push(side);
     }
     let mut shells: Vec<Vec<u32>> = shells.into_values().collect();
     shells.sort();
