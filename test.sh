@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # All tests: formatting, lints as errors, tests, documentation with broken links denied, licences, the viewer's bundle, and
-# the README's main command. Needs cargo and python3; node and npm for the viewer's bundle (skipped, with a word, without).
+# the Python wheel, the README's main command. Needs cargo and python3; node and npm for the viewer's bundle, PyPI for the wheel's
+# tests (skipped, with a word, without).
 set -euo pipefail
 cd "$(dirname "$0")"
 
@@ -34,6 +35,9 @@ if command -v mpirun >/dev/null && command -v mpicc >/dev/null; then
 else
     echo "skipped: MPI is not installed (apt-get install -y mpich libmpich-dev libclang-dev)"
 fi
+
+step "python wheel"
+tests/python.sh
 
 step "the README's main command"
 python3 tests/readme.py

@@ -34,7 +34,38 @@ struct ProgressState {
     on_terminal: bool,
     last_line: Instant,
     started: Instant,
+    /// The step under way, since when, and how much of it was done then.
+    step: (&'static str, Instant, u64),
 }
+
+impl ProgressState {
+    /// "40 %, about 12 s left of it": how far the step is, where its end is known.
+    fn share(&mut self, p: &Progress) -> Option<String> {
+        if self.step.0 != p.stage || p.done < self.step.2 {
+            self.step = (p.stage, Instant::now(), p.done);
+        }
+        let total = p.total.filter(|&t| t > 0 && p.done <= t)?;
+        let share = format!("{:.0} %", 100.0 * p.done as f64 / total as f64);
+        let (since, made) = (self.step.1.elapsed(), p.done - self.step.2);
+        if since < Duration::from_secs(2) || made == 0 || p.done == total {
+            return Some(share);
+        }
+        let left = since.as_secs_f64() * (total - p.done) as f64 / made as f64;
+        Some(format!("{share}, about {} left of it", duration(left)))
+    }
+}
+
+/// "12 s", "3 min", "2 h".
+fn duration(seconds: f64) -> String {
+    match seconds {
+        s if s < 90.0 => format!("{s:.0} s"),
+        s if s < 5400.0 => format!("{:.0} min", s / 60.0),
+        s => format!("{:.0} h", s / 3600.0),
+    }
+}
+
+/// Raised when a key of a JSON report goes or changes its meaning; new keys leave it as it is.
+const JSON_VERSION: u32 = 1;
 
 /// Time between two plain progress lines.
 const LINE_EVERY: Duration = Duration::from_secs(5);
@@ -49,7 +80,7 @@ impl Console {
             ColorWhen::Auto => on_terminal && std::env::var_os("NO_COLOR").is_none(),
         };
         let now = Instant::now();
-        let progress = ProgressState { bar: None, on_terminal, last_line: now, started: now };
+        let progress = ProgressState { bar: None, on_terminal, last_line: now, started: now, step: ("", now, 0) };
         Self { quiet: common.quiet, verbose: common.verbose, json: common.json, color, progress: Mutex::new(progress) }
     }
 
@@ -97,12 +128,16 @@ impl Console {
         Ok(())
     }
 
-    /// Prints a value as JSON on stdout.
+    /// Prints a value as JSON on stdout; an object begins with the version of its keys.
     ///
     /// # Errors
     /// If stdout cannot be written.
     pub fn print_json(&self, value: &impl serde::Serialize) -> anyhow::Result<()> {
-        self.print(serde_json::to_string_pretty(value)?)
+        let mut value = serde_json::to_value(value)?;
+        if let Some(object) = value.as_object_mut() {
+            object.shift_insert(0, "json_version".to_owned(), JSON_VERSION.into());
+        }
+        self.print(serde_json::to_string_pretty(&value)?)
     }
 
     /// Shows progress of long work.
@@ -112,6 +147,8 @@ impl Console {
         }
         let mut state = self.progress.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         let elapsed = state.started.elapsed();
+        let share = state.share(p).map_or(String::new(), |share| format!(" ({share})"));
+        let message = if p.message.is_empty() { String::new() } else { format!(": {}", p.message) };
         if state.on_terminal {
             let bar = state.bar.get_or_insert_with(|| {
                 let bar = ProgressBar::new(0);
@@ -125,14 +162,13 @@ impl Console {
                 bar.set_style(bar_style(false));
             }
             bar.set_position(p.done);
-            bar.set_message(format!("{}: {}", p.stage, p.message));
+            bar.set_message(format!("{}{share}{message}", p.stage));
             if elapsed > Duration::from_millis(100) {
                 bar.tick();
             }
         } else if state.last_line.elapsed() >= LINE_EVERY {
             state.last_line = Instant::now();
-            let of = p.total.map_or(String::new(), |t| format!(" of {t}"));
-            tell(&format!("[{:6.1}s] {} {}{of}: {}", elapsed.as_secs_f64(), p.stage, p.done, p.message));
+            tell(&format!("[{:6.1}s] {}{share}{message}", elapsed.as_secs_f64(), p.stage));
         }
     }
 

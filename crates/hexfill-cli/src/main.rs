@@ -61,12 +61,17 @@ pub(crate) struct Common {
     pub color: console::ColorWhen,
 }
 
+/// More threads than these are never of use.
+const THREADS_PER_CORE: usize = 4;
+
 #[derive(Subcommand)]
 enum Command {
     /// Fill a surface with hexahedra.
     Fill(commands::fill::FillArgs),
     /// Judge a mesh: which level of the validity ladder it reaches, which rule fails where.
     Check(commands::check::CheckArgs),
+    /// Say everything that is wrong with a surface before it is filled, and mend it.
+    Doctor(commands::doctor::DoctorArgs),
     /// Say what a surface or mesh is: genus, chords, key, signature, whether a hex mesh exists.
     #[command(visible_alias = "dual")]
     Info(commands::info::InfoArgs),
@@ -110,6 +115,12 @@ fn run() -> ExitCode {
             console.error(&anyhow::anyhow!("--threads 0: give at least 1"));
             return Exit::Usage.into();
         }
+        // Results do not depend on it, and threads that wait for a core only stand in each other's way.
+        let most = THREADS_PER_CORE * std::thread::available_parallelism().map_or(1, usize::from);
+        if threads > most {
+            console.note(format!("--threads {threads}: {most} are used, {THREADS_PER_CORE} for each core"));
+        }
+        let threads = threads.min(most);
         // More threads than the system gives is the user's number, no defect.
         if let Err(error) = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global() {
             console.error(&anyhow::anyhow!("--threads {threads}: {error}"));
@@ -131,6 +142,7 @@ fn run() -> ExitCode {
     let outcome = match &cli.command {
         Command::Fill(args) => commands::fill::run(args, &console, &ctx),
         Command::Check(args) => commands::check::run(args, &console, &ctx),
+        Command::Doctor(args) => commands::doctor::run(args, &console),
         Command::Info(args) => commands::info::run(args, &console),
         Command::Embed(args) => commands::embed::run(args, &console, &ctx),
         Command::Simplify(args) => commands::simplify::run(args, &console, &ctx),

@@ -52,6 +52,10 @@ fn matches(patterns: &[String], lines: &[&str]) -> bool {
 
 fn run_page(path: &Path) -> usize {
     let dir = tempfile::tempdir().unwrap();
+    // The pages use files of the repository's folder `corpus` as if they stood beside it.
+    #[cfg(unix)]
+    std::os::unix::fs::symlink(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../corpus"), dir.path().join("corpus"))
+        .unwrap();
     let steps = steps(&std::fs::read_to_string(path).unwrap());
     for step in &steps {
         let words: Vec<&str> = step.command.split_whitespace().collect();

@@ -1,7 +1,7 @@
 //! Time and memory of the construction: `scale [k ...]` fills the cube with `6 k^2` quads and a torus of the same size.
 
 use hexfill_check::{Judged, Level, judge};
-use hexfill_construct::{Options, construct};
+use hexfill_construct::{ConstructOptions, construct};
 use hexfill_mesh::generate::{cube_surface, refined, torus};
 use hexfill_mesh::{Context, QuadSurface};
 use std::time::Instant;
@@ -15,7 +15,7 @@ fn peak_gib() -> f64 {
 
 fn run(name: &str, surface: &QuadSurface, points: Option<&[[f64; 3]]>) {
     let start = Instant::now();
-    let made = match construct(surface, points, &Options::default(), &Context::default()) {
+    let made = match construct(surface, points, &ConstructOptions::default(), &Context::default()) {
         Ok(made) => made,
         Err(e) => return println!("{name} {}: {e}", surface.n_quads()),
     };

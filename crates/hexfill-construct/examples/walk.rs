@@ -1,7 +1,7 @@
 //! The octagonal spindle (or a surface signature) step by step: the tables of the book's page `construction`.
 
 use hexfill_construct::{
-    BallCore, CellChoice, CellLibrary, Options, RouteChoice, colouring, construct, core_triangles, light_sides,
+    BallCore, CellChoice, CellLibrary, ConstructOptions, RouteChoice, colouring, construct, core_triangles, light_sides,
 };
 use hexfill_mesh::generate::octagonal_spindle;
 use hexfill_mesh::{Context, QuadId, parse_surface_signature};
@@ -16,7 +16,12 @@ fn main() {
     println!("surface: {} quads, {} vertices, genus {}", surface.n_quads(), surface.n_used_vertices(), surface.genus());
     let colours = colouring(&surface, false);
     let white: Vec<usize> = (0..surface.n_vertices()).filter(|&v| colours.white[v]).collect();
-    println!("1 colours: white {white:?}, {} cut edges", colours.n_cut_edges);
+    println!("1 plan: colours: white {white:?}, {} cut edges", colours.n_cut_edges);
+    for q in 0..surface.n_quads() {
+        println!("  q{q}: {:?}", surface.quad(QuadId::new(q)));
+    }
+    let triangles = core_triangles(&surface, RouteChoice::Auto);
+    println!("2 core: {} inner triangles {:?}", triangles.len(), triangles);
     match light_sides(&surface, &[], 0, &ctx) {
         Ok(sides) => {
             let pairs: Vec<(u32, u32)> = surface
@@ -24,15 +29,10 @@ fn main() {
                 .filter(|&d| d < surface.twin(d) && sides.light[d.index()])
                 .map(|d| (d.quad().0, surface.twin(d).quad().0))
                 .collect();
-            println!("2 light sides between quads {pairs:?}");
+            println!("3 layer: light sides between quads {pairs:?}");
         }
         Err(e) => return println!("{e}"),
     }
-    for q in 0..surface.n_quads() {
-        println!("  q{q}: {:?}", surface.quad(QuadId::new(q)));
-    }
-    let triangles = core_triangles(&surface, RouteChoice::Auto);
-    println!("3-4 inner triangles: {} {triangles:?}", triangles.len());
     for cell in CellLibrary::built_in(CellChoice::Fewest).cells() {
         println!("  cell {}: {} hexes, {} points inside", cell.pattern, cell.hexes.len(), cell.n_interior());
     }
@@ -41,7 +41,7 @@ fn main() {
         (RouteChoice::Auto, BallCore::Fewest),
         (RouteChoice::Erickson, BallCore::Centred),
     ] {
-        let options = Options { route, ball_core: core, ..Options::default() };
+        let options = ConstructOptions { route, ball_core: core, ..ConstructOptions::default() };
         match construct(&surface, None, &options, &ctx) {
             Ok(made) => println!("{core:?}: {}", made.report),
             Err(e) => println!("{e}"),

@@ -1,6 +1,6 @@
 //! Why a surface is not filled.
 
-use crate::pattern::Pattern;
+use crate::cells::pattern::Pattern;
 use hexfill_mesh::{Edge, HexMeshError, ImproperPair, Offenders, StopReason};
 
 /// Why there is no construction.

@@ -1,50 +1,57 @@
 //! A hex mesh for any quad surface that can have one.
 //!
-//! One file per step: [`colouring`](crate::colouring()), matching, buffer layer, tetrahedra, Sigma, splitting,
-//! assembly. [`construct`] runs them all. The surface stays exactly as it is.
+//! A pipeline, each step a function in its own folder, read aloud by [`construct`](crate::construct()):
+//!
+//! | step | from | to |
+//! |---|---|---|
+//! | `plan` | the surface | its colours, and light sides that suit positions |
+//! | `core` | the inner copy of the surface | tetrahedra ([`TetComplex`]) by one of five makers ([`Core`]) |
+//! | `layer` | a cube between each quad and its copy | light sides, ids of all points, patterns of the cubes ([`Pattern`]) |
+//! | `cut` | the edges of the tetrahedra | those that Sigma, the dual surface, crosses |
+//! | `hexes` | patterns, tetrahedra, cuts | hexes by table look-up ([`CellLibrary`]) |
+//! | `positions` | the inner copy, templates of cells | start positions |
+//! | `joins` | pairs of odd components | a ball each, filled by the construction itself |
+//!
+//! Below them: `surface` (what the surface alone tells: [`existence()`]) and `cells` (cells as data).
+//! The surface stays exactly as it is.
 //! Sources: J. Erickson, "Efficiently hex-meshing things with topology" (2014); D. Eppstein (1999);
-//! K. Verhetsel, J. Pellerin, J.-F. Remacle (2019). The book's page `construction` tells the whole story.
+//! K. Verhetsel, J. Pellerin, J.-F. Remacle (2019). The book's page `construction` tells the whole story in the same order.
 
-mod assemble;
-mod ball;
-mod cell;
-mod colouring;
+#![warn(unreachable_pub)]
+
+mod cells;
 mod construct;
-mod darts;
-mod delaunay;
+mod core;
+mod cut;
 mod error;
-mod existence;
-mod given;
-mod handlebody;
-mod join;
+mod hexes;
+mod ids;
+mod joins;
 mod layer;
-mod linking;
-mod matching;
-mod pattern;
+mod options;
+mod plan;
+mod positions;
 mod report;
-mod sigma;
-#[cfg(test)]
-mod sigma_oracle;
-mod solids;
-mod split;
-mod start;
-mod strain;
-mod tetgen;
-mod tets;
-mod vector;
+mod surface;
 
-pub use ball::{BallCore, BallTets};
-pub use cell::{Cell, CellChoice, CellLibrary, PlacedCell};
-pub use colouring::{Colouring, all_black, colouring};
-pub use construct::{Construction, Options, RouteChoice, construct, core_triangles};
-pub use delaunay::DelaunayTets;
+pub use cells::cell::Cell;
+pub use cells::library::{CellChoice, CellLibrary, PlacedCell};
+pub use cells::pattern::{Pattern, Role, SYMMETRIES, Side, Symmetry};
+pub use cells::template::{template, template_position};
+pub use construct::construct;
+pub use core::complex::{TET_EDGES, TetComplex, tet_edge};
+pub use core::cone::{BallCore, ConeTets};
+pub use core::delaunay::DelaunayTets;
+pub use core::from_caller::GivenTets;
+pub use core::handlebody::HandlebodyTets;
+pub use core::maker::{Core, InteriorTets};
+pub use core::request::TetRequest;
+pub use core::tetgen::TetgenTets;
+pub use core::triangles::core_triangles;
 pub use error::ConstructError;
-pub use existence::{Existence, existence};
-pub use given::GivenTets;
-pub use handlebody::HandlebodyTets;
-pub use matching::{LightSides, light_sides};
-pub use pattern::{Pattern, Role, SYMMETRIES, Side, Symmetry};
-pub use report::{Report, Route};
-pub use start::{template, template_position};
-pub use tetgen::TetgenTets;
-pub use tets::{InteriorTets, TET_EDGES, TetComplex, TetRequest, tet_edge};
+pub use ids::{EdgeId, FaceId, TetId};
+pub use options::{ConstructOptions, RouteChoice};
+pub use plan::colouring::{Colouring, all_black, colouring};
+pub use plan::matching::{LightSides, light_sides};
+pub use report::{Construction, Report, Route};
+pub use surface::existence::{Existence, existence};

@@ -1,8 +1,25 @@
-//! What a construction was made of.
+//! What a construction is, and what it was made of.
 
-use crate::pattern::Pattern;
+use crate::cells::pattern::Pattern;
+use crate::core::Inside;
+use crate::core::maker::Core;
+use crate::layer::Layer;
+use crate::options::RouteChoice;
+use crate::plan::Plan;
+use hexfill_mesh::HexMesh;
 use std::collections::BTreeMap;
 use std::fmt;
+
+/// A hex mesh whose boundary is the surface.
+#[derive(Clone, Debug)]
+pub struct Construction {
+    /// The mesh. The surface's vertices keep their ids; inner vertices follow.
+    pub mesh: HexMesh,
+    /// What it was made of.
+    pub report: Report,
+    /// Start positions for every vertex, if the surface has positions: those of the surface bit for bit.
+    pub start: Option<Vec<[f64; 3]>>,
+}
 
 /// How the surface was coloured.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -43,7 +60,7 @@ pub struct Report {
     /// Hexes of the buffer layer.
     pub n_cell_hexes: usize,
     /// Who made the tetrahedra.
-    pub tets_by: &'static str,
+    pub tets_by: Core,
     /// Tetrahedra of the core.
     pub n_tets: usize,
     /// Tetrahedra split into 4, 7 and 8 hexes.
@@ -59,6 +76,43 @@ pub struct Report {
 }
 
 impl Report {
+    /// The report before odd components are joined.
+    pub(crate) fn new(
+        plan: &Plan<'_>,
+        inside: &Inside,
+        layer: &Layer<'_>,
+        cells: BTreeMap<Pattern, (usize, usize)>,
+        n_split: [usize; 3],
+    ) -> Self {
+        let n_quads = plan.surface.n_quads();
+        Self {
+            route: match (plan.options.route, plan.colours.n_cut_edges) {
+                (RouteChoice::Erickson, _) => Route::Erickson,
+                (RouteChoice::Auto, 0) => Route::Bipartite,
+                (RouteChoice::Auto, _) => Route::Mixed,
+            },
+            n_quads,
+            n_white: plan.colours.white.iter().filter(|&&w| w).count(),
+            n_cut_edges: plan.colours.n_cut_edges,
+            n_unmatched: layer.n_unmatched(),
+            n_cell_hexes: cells.values().map(|(count, hexes)| count * hexes).sum(),
+            cells,
+            tets_by: inside.core,
+            n_tets: inside.complex.tets.len(),
+            n_split,
+            n_core_hexes: 4 * n_split[0] + 7 * n_split[1] + 8 * n_split[2],
+            n_cone_hexes: (inside.is_star && inside.core == Core::Delaunay).then_some(8 * n_quads),
+            n_joins: inside.corridors.len(),
+            n_join_hexes: 0,
+        }
+    }
+
+    /// One more pair joined: hexes of the core that went, and those that came.
+    pub(crate) fn count_join(&mut self, n_removed: usize, n_filled: usize) {
+        self.n_core_hexes -= n_removed;
+        self.n_join_hexes += n_filled;
+    }
+
     /// Number of hexes.
     pub fn n_hexes(&self) -> usize {
         self.n_cell_hexes + self.n_core_hexes + self.n_join_hexes

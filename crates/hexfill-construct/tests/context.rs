@@ -3,7 +3,7 @@
 mod common;
 
 use common::{box_at, check, one_more, plate, together, torus_at, voxels};
-use hexfill_construct::{ConstructError, Options, RouteChoice, construct};
+use hexfill_construct::{ConstructError, ConstructOptions, RouteChoice, construct};
 use hexfill_mesh::generate::{Random, random_sphere};
 use hexfill_mesh::{Context, Progress, QuadSurface, StopReason};
 use std::sync::Mutex;
@@ -37,7 +37,12 @@ fn cancelled_after_any_report() {
             };
             let ctx = Context { cancel: Some(&cancel), progress: Some(&progress), ..Context::default() };
             let before = Instant::now();
-            let made = construct(&surface, points.as_deref(), &Options { route, ..Options::default() }, &ctx);
+            let made = construct(
+                &surface,
+                points.as_deref(),
+                &ConstructOptions { route, ..ConstructOptions::default() },
+                &ctx,
+            );
             assert!(before.elapsed() < Duration::from_secs(20));
             (made, calls.load(Ordering::Relaxed))
         };
@@ -61,7 +66,7 @@ fn cancelled_after_any_report() {
 fn a_deadline_in_the_past_stops_at_once() {
     let (surface, points) = plate(1, 2, &[]);
     let ctx = Context::default().with_time_limit(Duration::ZERO);
-    match construct(&surface, Some(&points), &Options::default(), &ctx) {
+    match construct(&surface, Some(&points), &ConstructOptions::default(), &ctx) {
         Err(ConstructError::Stopped(StopReason::TimeLimit)) => {}
         other => panic!("{other:?}"),
     }
@@ -79,7 +84,7 @@ fn progress_names_the_stages_in_order() {
         }
     };
     let ctx = Context { progress: Some(&progress), ..Context::default() };
-    construct(&surface, Some(&points), &Options::default(), &ctx).unwrap();
+    construct(&surface, Some(&points), &ConstructOptions::default(), &ctx).unwrap();
     let expected = ["colouring", "tetrahedra", "disks", "matching", "buffer layer", "sigma", "cells", "core", "mesh"];
     assert_eq!(*stages.lock().unwrap(), expected);
 }
@@ -87,7 +92,7 @@ fn progress_names_the_stages_in_order() {
 #[test]
 fn the_same_bytes_alone_and_beside_others() {
     let bytes = |(surface, points, route): &Case| -> (Vec<[u32; 8]>, Vec<[u64; 3]>, String) {
-        let options = Options { route: *route, ..Options::default() };
+        let options = ConstructOptions { route: *route, ..ConstructOptions::default() };
         let made = construct(surface, points.as_deref(), &options, &Context::default()).unwrap();
         let start = made.start.unwrap_or_default().iter().map(|p| p.map(f64::to_bits)).collect();
         (made.mesh.hexes().iter().map(|h| h.map(|v| v.0)).collect(), start, made.report.to_string())
@@ -138,7 +143,7 @@ fn random_voxel_surfaces() {
         if !hexfill_mesh::is_proper(&surface) || surface.genus() > 7 || surface.n_components() > 5 {
             continue;
         }
-        let made = construct(&surface, Some(&points), &Options::default(), &Context::default()).unwrap();
+        let made = construct(&surface, Some(&points), &ConstructOptions::default(), &Context::default()).unwrap();
         check(&surface, &made);
         genera[surface.genus() as usize] += 1;
         components[surface.n_components()] += 1;

@@ -4,14 +4,14 @@ mod common;
 
 use common::read_obj;
 use hexfill_check::{Judged, Level, judge};
-use hexfill_construct::{Existence, Options, construct, existence};
+use hexfill_construct::{ConstructOptions, Existence, construct, existence};
 use hexfill_mesh::Context;
 
 fn fill(text: &str, n_quads: usize, genus: u64) -> f64 {
     let (surface, points) = read_obj(text);
     assert_eq!((surface.n_quads(), surface.genus(), surface.n_components()), (n_quads, genus, 1));
     assert!(matches!(existence(&surface, Some(&points)), Existence::Exists { .. }));
-    let made = construct(&surface, Some(&points), &Options::default(), &Context::default()).unwrap();
+    let made = construct(&surface, Some(&points), &ConstructOptions::default(), &Context::default()).unwrap();
     println!("{}", made.report);
     let hexes: Vec<[u32; 8]> = made.mesh.hexes().iter().map(|h| h.map(|v| v.0)).collect();
     let quads: Vec<[u32; 4]> = surface.quads().iter().map(|q| q.map(|v| v.0)).collect();

@@ -27,15 +27,13 @@ fn fill(surface: &QuadSurface, points: &[[f64; 3]]) -> Result<(usize, usize), Co
     assert_eq!(&all[..points.len()], points);
     let mut inside = 0.0;
     for tet in &complex.tets {
-        let volume = orient(tet.map(|v| all[v as usize]));
+        let volume = orient(tet.map(|v| all[v.index()]));
         assert!(volume > 0.0, "{tet:?}: {volume}");
         inside += volume;
     }
-    let origin = points[triangles[0][0] as usize];
-    let enclosed: f64 = triangles
-        .iter()
-        .map(|&[a, b, c]| orient([origin, points[a as usize], points[b as usize], points[c as usize]]))
-        .sum();
+    let origin = points[triangles[0][0].index()];
+    let enclosed: f64 =
+        triangles.iter().map(|t| t.map(|v| points[v.index()])).map(|[a, b, c]| orient([origin, a, b, c])).sum();
     assert!((inside - enclosed).abs() < 1e-9 * enclosed, "{inside} {enclosed}");
     Ok((complex.tets.len(), complex.n_vertices - points.len()))
 }

@@ -5,7 +5,7 @@ mod common;
 
 use common::{outward, torus_points};
 use hexfill_check::{Judged, Level, judge};
-use hexfill_construct::{ConstructError, Construction, Existence, Options, RouteChoice, construct, existence};
+use hexfill_construct::{ConstructError, ConstructOptions, Construction, Existence, RouteChoice, construct, existence};
 use hexfill_mesh::generate::{holed_plate, torus};
 use hexfill_mesh::{Context, Edge, QuadSurface};
 use std::collections::{BTreeMap, BTreeSet};
@@ -42,7 +42,7 @@ fn tori_of_all_parities() {
             let points = torus_points(n, m, n_is_tube, 1.0, [0.0; 3]);
             let surface = outward(&torus(n, m, 0).unwrap(), &points);
             let tube = if n_is_tube { n } else { m };
-            let made = construct(&surface, Some(&points), &Options::default(), &Context::default());
+            let made = construct(&surface, Some(&points), &ConstructOptions::default(), &Context::default());
             if tube % 2 == 0 {
                 assert!(matches!(existence(&surface, Some(&points)), Existence::Exists { .. }));
                 let made = made.unwrap();
@@ -66,11 +66,11 @@ fn plates_with_holes() {
         let surface = holed_plate(genus, 1).unwrap();
         let points = plate_points(genus);
         assert_eq!(surface.genus(), genus as u64);
-        let made = construct(&surface, Some(&points), &Options::default(), &Context::default()).unwrap();
+        let made = construct(&surface, Some(&points), &ConstructOptions::default(), &Context::default()).unwrap();
         println!("genus {genus}: {}", made.report);
         check(&surface, &made);
         // Erickson's colouring needs no bipartition and costs more.
-        let options = Options { route: RouteChoice::Erickson, ..Options::default() };
+        let options = ConstructOptions { route: RouteChoice::Erickson, ..ConstructOptions::default() };
         let old = construct(&surface, Some(&points), &options, &Context::default()).unwrap();
         println!("genus {genus}: {}", old.report);
         check(&surface, &old);
@@ -114,7 +114,7 @@ fn plate_points(genus: usize) -> Vec<[f64; 3]> {
 fn without_positions_an_odd_torus_is_not_decided() {
     let surface = torus(4, 5, 0).unwrap();
     assert!(matches!(existence(&surface, None), Existence::Unknown { .. }));
-    let made = construct(&surface, None, &Options::default(), &Context::default());
+    let made = construct(&surface, None, &ConstructOptions::default(), &Context::default());
     assert!(matches!(made, Err(ConstructError::InteriorNeeded { genus: 1, .. })));
     assert!(matches!(existence(&torus(4, 6, 0).unwrap(), None), Existence::Exists { .. }));
     assert!(matches!(existence(&torus(3, 5, 0).unwrap(), None), Existence::OddQuads { given: 15 }));
@@ -159,10 +159,10 @@ fn cavities() {
     for holes in [vec![[1, 1, 1]], vec![[1, 1, 1], [3, 3, 3]]] {
         let (surface, points) = cube_with_cavities(5, &holes);
         assert_eq!((surface.n_components(), surface.genus()), (holes.len() + 1, 0));
-        let made = construct(&surface, Some(&points), &Options::default(), &Context::default()).unwrap();
+        let made = construct(&surface, Some(&points), &ConstructOptions::default(), &Context::default()).unwrap();
         println!("{} cavities: {}", holes.len(), made.report);
         check(&surface, &made);
-        let made = construct(&surface, None, &Options::default(), &Context::default());
+        let made = construct(&surface, None, &ConstructOptions::default(), &Context::default());
         assert!(matches!(made, Err(ConstructError::InteriorNeeded { .. })));
     }
 }

@@ -3,11 +3,11 @@
 mod common;
 
 use common::{box_at, check, one_more, plate, together, torus_at};
-use hexfill_construct::{ConstructError, Construction, Existence, Options, RouteChoice, construct, existence};
+use hexfill_construct::{ConstructError, ConstructOptions, Construction, Existence, RouteChoice, construct, existence};
 use hexfill_mesh::{Context, QuadSurface};
 
 fn fill(surface: &QuadSurface, points: &[[f64; 3]]) -> Construction {
-    let made = construct(surface, Some(points), &Options::default(), &Context::default()).unwrap();
+    let made = construct(surface, Some(points), &ConstructOptions::default(), &Context::default()).unwrap();
     println!("{}", made.report);
     check(surface, &made);
     made
@@ -31,7 +31,7 @@ fn a_cavity_with_a_handle() {
     for (n, m) in [(4, 4), (4, 6), (4, 5), (6, 3)] {
         let (surface, points) = together(&[box_at(3, 6.0, O, true), torus_at(n, m, true, 1.0, O, false)]);
         assert_eq!((surface.genus(), surface.n_components()), (1, 2));
-        let made = construct(&surface, Some(&points), &Options::default(), &Context::default());
+        let made = construct(&surface, Some(&points), &ConstructOptions::default(), &Context::default());
         // The loop round the axis bounds a disk across the hole of the torus.
         if m % 2 == 0 {
             assert!(matches!(existence(&surface, Some(&points)), Existence::Exists { .. }));
@@ -60,7 +60,7 @@ fn solids_apart_and_nested() {
     fill(&surface, &points);
     // A cavity that faces outward is no cavity.
     let (surface, points) = together(&[box_at(4, 10.0, O, true), box_at(3, 8.0, O, true)]);
-    match construct(&surface, Some(&points), &Options::default(), &Context::default()) {
+    match construct(&surface, Some(&points), &ConstructOptions::default(), &Context::default()) {
         Err(e @ ConstructError::InteriorNeeded { genus: 0, components: 2, .. }) => {
             assert!(e.to_string().contains("reverse"), "{e}");
         }
@@ -72,7 +72,7 @@ fn solids_apart_and_nested() {
 fn messages_count_genus_over_all_components() {
     let (surface, _) =
         together(&[box_at(3, 10.0, O, true), box_at(2, 1.0, O, false), box_at(1, 0.1, [5.0, 0.0, 0.0], false)]);
-    match construct(&surface, None, &Options::default(), &Context::default()) {
+    match construct(&surface, None, &ConstructOptions::default(), &Context::default()) {
         Err(e @ ConstructError::InteriorNeeded { genus: 0, components: 3, .. }) => {
             assert!(e.to_string().contains("genus 0, 3 component(s)"), "{e}");
         }
@@ -93,7 +93,7 @@ fn odd_components_of_one_solid_are_joined() {
         let found = existence(&surface, Some(&points));
         assert!(matches!(found, Existence::Exists { .. }), "{found:?}");
         for route in [RouteChoice::Auto, RouteChoice::Erickson] {
-            let options = Options { route, ..Options::default() };
+            let options = ConstructOptions { route, ..ConstructOptions::default() };
             let made = construct(&surface, Some(&points), &options, &Context::default()).unwrap();
             println!("{n} x {m} round {inner} x {m}: {}", made.report);
             assert_eq!(made.report.n_joins, 1);
@@ -112,7 +112,7 @@ fn a_solid_with_an_odd_number_of_quads_is_refused() {
         other => panic!("{other:?}"),
     }
     assert!(matches!(existence(&surface, None), Existence::Unknown { .. }));
-    match construct(&surface, Some(&points), &Options::default(), &Context::default()) {
+    match construct(&surface, Some(&points), &ConstructOptions::default(), &Context::default()) {
         Err(ConstructError::OddComponent { component: 0, given: 15 }) => {}
         other => panic!("{other:?}"),
     }

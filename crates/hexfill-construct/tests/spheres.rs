@@ -4,7 +4,7 @@ mod common;
 
 use common::{box_at, voxels};
 use hexfill_check::{Judged, Level, cell_quality, judge};
-use hexfill_construct::{BallCore, CellChoice, Construction, Options, construct};
+use hexfill_construct::{BallCore, CellChoice, ConstructOptions, Construction, Core, construct};
 use hexfill_mesh::generate::{all_spheres_up_to, octagonal_spindle, random_sphere, schneiders_pyramid};
 use hexfill_mesh::{Context, QuadSurface};
 
@@ -19,7 +19,7 @@ fn check(surface: &QuadSurface, made: &Construction) {
 }
 
 fn fill(surface: &QuadSurface, ball_core: BallCore) -> Construction {
-    let options = Options { ball_core, ..Options::default() };
+    let options = ConstructOptions { ball_core, ..ConstructOptions::default() };
     let made = construct(surface, None, &options, &Context::default()).unwrap();
     check(surface, &made);
     made
@@ -66,7 +66,7 @@ fn random_spheres() {
 
 /// Certified hexes, and the least certified scaled Jacobian, as constructed.
 fn quality(surface: &QuadSurface, points: &[[f64; 3]]) -> (Construction, usize, f64) {
-    let options = Options { cells: CellChoice::Embeddable, ..Options::default() };
+    let options = ConstructOptions { cells: CellChoice::Embeddable, ..ConstructOptions::default() };
     let made = construct(surface, Some(points), &options, &Context::default()).unwrap();
     check(surface, &made);
     let hexes = made.mesh.hexes_raw();
@@ -89,7 +89,7 @@ fn a_fine_ball_has_graded_tetrahedra_and_a_coarse_one_a_cone() {
         let (made, valid, least) = quality(&surface, &points);
         println!("{}\nleast {least}", made.report);
         assert_eq!(valid, made.mesh.n_hexes());
-        assert_eq!(made.report.tets_by == "ball", cone);
+        assert_eq!(made.report.tets_by == Core::Cone, cone);
         if cone {
             assert_eq!(made.report.n_hexes(), 46 * surface.n_quads());
             assert_eq!(made.report.n_cone_hexes, None);
@@ -105,8 +105,8 @@ fn a_surface_that_its_centroid_does_not_see_is_coned_from_its_kernel() {
     // An angle: only points in the corner see both arms.
     let (surface, points) = voxels([4, 4, 1], |[x, y, _]| x == 0 || y == 0);
     let (made, valid, _) = quality(&surface, &points);
-    assert_eq!(made.report.tets_by, "ball");
+    assert_eq!(made.report.tets_by, Core::Cone);
     assert_eq!(valid, made.mesh.n_hexes());
     let skewed: Vec<[f64; 3]> = points.iter().map(|p| [p[0] + 100.0, p[1] + 0.3 * p[0], 2.0 * p[2]]).collect();
-    assert_eq!(quality(&surface, &skewed).0.report.tets_by, "ball");
+    assert_eq!(quality(&surface, &skewed).0.report.tets_by, Core::Cone);
 }

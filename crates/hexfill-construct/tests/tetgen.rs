@@ -4,10 +4,11 @@
 mod common;
 
 use common::{box_at, bulged, check, one_more, plate, read_obj, together, torus_at};
-use hexfill_construct::{ConstructError, Construction, Options, TetgenTets, construct};
+use hexfill_construct::{ConstructError, ConstructOptions, Construction, Core, TetgenTets, construct};
 use hexfill_mesh::{Context, QuadSurface, StopReason};
 use std::os::unix::fs::PermissionsExt;
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -21,14 +22,17 @@ fn is_installed() -> bool {
 }
 
 fn fill(surface: &QuadSurface, points: &[[f64; 3]], program: &str) -> Result<Construction, ConstructError> {
-    let options = Options { tets: Some(Box::new(TetgenTets { program: program.into() })), ..Options::default() };
+    let options = ConstructOptions {
+        tets: Some(Arc::new(TetgenTets { program: program.into() })),
+        ..ConstructOptions::default()
+    };
     construct(surface, Some(points), &options, &Context::default())
 }
 
 fn filled(surface: &QuadSurface, points: &[[f64; 3]]) {
     let made = fill(surface, points, "tetgen").unwrap();
     println!("{}", made.report);
-    assert_eq!(made.report.tets_by, "tetgen");
+    assert_eq!(made.report.tets_by, Core::Tetgen);
     check(surface, &made);
 }
 
@@ -173,7 +177,10 @@ printf '1 4 0\\n0 0 1 2 3\\n' > core.1.ele";
 fn a_program_that_hangs_is_cancelled() {
     let fake = Fake::new("hangs", "exec sleep 600");
     let (surface, points) = plate(1, 1, &[]);
-    let options = Options { tets: Some(Box::new(TetgenTets { program: fake.0.clone() })), ..Options::default() };
+    let options = ConstructOptions {
+        tets: Some(Arc::new(TetgenTets { program: fake.0.clone() })),
+        ..ConstructOptions::default()
+    };
     let cancel = AtomicBool::new(false);
     let ctx = Context { cancel: Some(&cancel), ..Context::default() };
     let before = Instant::now();

@@ -11,6 +11,7 @@
 
 mod angle;
 mod direction;
+mod extent;
 mod quad;
 mod star;
 mod vector;
@@ -18,6 +19,7 @@ mod winding;
 
 pub use angle::{corner_angle, dihedral_angle};
 pub use direction::{Best, best_direction};
+pub use extent::{bounding_box, centroid, tet_volume};
 pub use quad::{cone, halves};
 pub use star::{Ray, Reached, climb_star, star_bound};
 pub use vector::{Vector, add, add_scaled, cross, det, direction, dot, midpoint, norm, scale, sub, unit};

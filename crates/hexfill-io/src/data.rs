@@ -175,12 +175,12 @@ impl MeshData {
     }
 
     /// All faces with their tags (0 for none), in the order of the file.
-    pub(crate) fn tagged_faces(&self) -> impl Iterator<Item = (&[u32], i64)> {
+    pub(crate) fn tagged_faces(&self) -> impl Iterator<Item = (&[u32], i64)> + Clone {
         self.numbered_faces().map(|(_, face, tag)| (face, tag))
     }
 
     /// The same with the index of each face that is a quad among the quads.
-    pub(crate) fn numbered_faces(&self) -> impl Iterator<Item = (Option<usize>, &[u32], i64)> {
+    pub(crate) fn numbered_faces(&self) -> impl Iterator<Item = (Option<usize>, &[u32], i64)> + Clone {
         let (mut position, mut quad, mut other) = (0, 0, 0);
         std::iter::from_fn(move || {
             // Positions that leave gaps (a hand-made MeshData) do no harm: the other faces then come last.

@@ -3,9 +3,12 @@
 //! Limits: 2^32 - 1 vertices, 2^30 - 1 quads (a dart is `4 * quad + corner` in a `u32`),
 //! (2^32 - 1) / 6 hexes (a facet is `6 * hex + side` in a `u32`).
 
+use crate::id_vec::Id;
 use std::fmt;
 
-macro_rules! id {
+/// A new kind of id: a `u32` newtype that prints as its letter and number.
+#[macro_export]
+macro_rules! id_type {
     ($(#[$doc:meta])* $name:ident, $letter:literal) => {
         $(#[$doc])*
         #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
@@ -13,6 +16,21 @@ macro_rules! id {
         pub struct $name(pub u32);
 
         impl $name {
+            /// No id: larger than all others.
+            pub const NONE: Self = Self(u32::MAX);
+
+            /// Whether this is an id at all.
+            #[inline]
+            pub const fn is_some(self) -> bool {
+                self.0 != u32::MAX
+            }
+
+            /// Whether this is [`NONE`](Self::NONE).
+            #[inline]
+            pub const fn is_none(self) -> bool {
+                self.0 == u32::MAX
+            }
+
             /// The id as an index into an array.
             #[inline]
             pub const fn index(self) -> usize {
@@ -29,15 +47,28 @@ macro_rules! id {
             }
         }
 
-        impl fmt::Display for $name {
-            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        impl $crate::Id for $name {
+            #[inline]
+            fn at(i: usize) -> Self {
+                debug_assert!(u32::try_from(i).is_ok());
+                Self(i as u32)
+            }
+
+            #[inline]
+            fn place(self) -> usize {
+                self.0 as usize
+            }
+        }
+
+        impl ::std::fmt::Display for $name {
+            fn fmt(&self, f: &mut ::std::fmt::Formatter<'_>) -> ::std::fmt::Result {
                 write!(f, concat!($letter, "{}"), self.0)
             }
         }
 
-        impl fmt::Debug for $name {
-            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                fmt::Display::fmt(self, f)
+        impl ::std::fmt::Debug for $name {
+            fn fmt(&self, f: &mut ::std::fmt::Formatter<'_>) -> ::std::fmt::Result {
+                ::std::fmt::Display::fmt(self, f)
             }
         }
 
@@ -49,15 +80,15 @@ macro_rules! id {
     };
 }
 
-id!(
+id_type!(
     /// A vertex (0-based).
     VertexId, "v"
 );
-id!(
+id_type!(
     /// A quad of a surface (0-based).
     QuadId, "q"
 );
-id!(
+id_type!(
     /// A hexahedron of a mesh (0-based).
     HexId, "h"
 );
@@ -68,6 +99,21 @@ id!(
 pub struct Dart(pub u32);
 
 impl Dart {
+    /// No dart: larger than all others.
+    pub const NONE: Self = Self(u32::MAX);
+
+    /// Whether this is a dart at all.
+    #[inline]
+    pub const fn is_some(self) -> bool {
+        self.0 != u32::MAX
+    }
+
+    /// Whether this is [`NONE`](Self::NONE).
+    #[inline]
+    pub const fn is_none(self) -> bool {
+        self.0 == u32::MAX
+    }
+
     /// The dart of side `side` (0..4) of `quad`.
     #[inline]
     pub const fn new(quad: QuadId, side: u32) -> Self {
@@ -108,6 +154,19 @@ impl Dart {
     #[inline]
     pub const fn prev(self) -> Self {
         Self((self.0 & !3) | ((self.0 + 3) & 3))
+    }
+}
+
+impl Id for Dart {
+    #[inline]
+    fn at(i: usize) -> Self {
+        debug_assert!(u32::try_from(i).is_ok());
+        Self(i as u32)
+    }
+
+    #[inline]
+    fn place(self) -> usize {
+        self.index()
     }
 }
 

@@ -4,15 +4,18 @@
 //! No floats and no files here: topology knows no positions.
 
 mod bipartition;
+mod buckets;
 mod chords;
 mod components;
 mod context;
 pub mod cube;
+mod forest;
 #[cfg(any(test, feature = "generate"))]
 pub mod generate;
 mod hex_code;
 mod hex_signature;
 mod hexmesh;
+mod id_vec;
 mod ids;
 mod improper;
 mod key;
@@ -27,14 +30,17 @@ mod surface_signature;
 mod valence;
 
 pub use bipartition::{OddCycle, bipartition};
+pub use buckets::Buckets;
 pub use chords::{Chord, chords, chords_by_quad};
 pub use components::{NotOrientable, disagreement, facet_components, n_vertex_components, orientation};
 pub use context::{Context, Progress, StopReason};
+pub use forest::Forest;
 pub use hex_signature::{
     HexAutomorphism, HexIsomorphism, hex_automorphisms, hex_isomorphism, hex_signature, hex_symmetry_order,
     oriented_hex_signature, parse_hex_signature,
 };
 pub use hexmesh::{Facet, HexMesh, HexMeshError};
+pub use id_vec::{Id, IdVec};
 pub use ids::{Dart, Edge, HexId, Offenders, QuadId, VertexId};
 pub use improper::{ImproperPair, improper_pairs, is_proper, is_three_connected};
 pub use key::{Key, KeyError, key, key_of_chords};

@@ -3,6 +3,7 @@
 //! A state costs a parent, a flip and the hash of its class. The hash only points: a filling is replayed and its
 //! boundary compared before it is handed out, so a clash of hashes costs time and never a wrong answer.
 
+use crate::atlas_index::{AtlasIndex, HASH_BITS, state_of};
 use crate::ball::Ball;
 use crate::canonical::Canonical;
 use crate::cavity::Cavity;
@@ -15,7 +16,7 @@ pub(crate) const STEP: u64 = 0;
 
 /// A class hash shortened for storage; never [`STEP`].
 pub(crate) fn short_hash(class: u128) -> u64 {
-    ((class >> 88) as u64).max(1)
+    ((class >> (128 - HASH_BITS)) as u64).max(1)
 }
 
 /// An immutable table of fillings. See the module page.
@@ -29,7 +30,7 @@ pub struct Atlas {
     /// Per state: the short hash of its class, or [`STEP`].
     pub(crate) hashes: Vec<u64>,
     /// The states that are more than steps, by hash, then ascending (fewest hexes first).
-    index: Vec<u32>,
+    index: AtlasIndex,
 }
 
 /// Counts of an atlas.
@@ -58,8 +59,7 @@ pub struct ClassStats {
 
 impl Atlas {
     pub(crate) fn from_parts(level_starts: Vec<u32>, parents: Vec<u32>, flips: Vec<Flip>, hashes: Vec<u64>) -> Self {
-        let mut index: Vec<u32> = (0..hashes.len() as u32).filter(|&s| hashes[s as usize] != STEP).collect();
-        index.sort_unstable_by_key(|&s| (hashes[s as usize], s));
+        let index = AtlasIndex::new(&hashes, STEP);
         Self { level_starts, parents, flips, hashes, index }
     }
 
@@ -99,16 +99,9 @@ impl Atlas {
         self.level_starts.partition_point(|&first| first <= state) as u32
     }
 
-    /// The states whose class has this hash, fewest hexes first.
-    fn states_with(&self, hash: u64) -> &[u32] {
-        let start = self.index.partition_point(|&s| self.hashes[s as usize] < hash);
-        let len = self.index[start..].partition_point(|&s| self.hashes[s as usize] == hash);
-        &self.index[start..start + len]
-    }
-
     /// The states whose class has this name, fewest hexes first; a hash only points.
-    pub(crate) fn states_of(&self, class: u128) -> &[u32] {
-        self.states_with(short_hash(class))
+    pub(crate) fn states_of(&self, class: u128) -> impl ExactSizeIterator<Item = u32> + '_ {
+        self.index.entries_with(short_hash(class)).iter().map(|&entry| state_of(entry))
     }
 
     /// The flips that lead from the cube to a state.
@@ -124,7 +117,7 @@ impl Atlas {
 
     /// Fewest hexes on record for a boundary with this canonical form, without replaying: a promise to be checked.
     pub(crate) fn hexes_hint(&self, class: u128) -> Option<u32> {
-        self.states_with(short_hash(class)).first().map(|&s| self.hexes_of(s))
+        self.states_of(class).next().map(|state| self.hexes_of(state))
     }
 
     /// The fillings on record whose boundary is isomorphic to the cavity's, fewest hexes first; whether they fit the
@@ -133,7 +126,7 @@ impl Atlas {
         let mut canonical = Canonical::new();
         canonical.compute(cavity);
         let code = canonical.code().to_vec();
-        self.states_with(short_hash(class_hash(&code))).iter().filter_map(move |&state| {
+        self.states_of(class_hash(&code)).filter_map(move |state| {
             let ball = Ball::replay(self.flips_to(state))?;
             let mut form = Canonical::new();
             form.compute(&ball.boundary);
@@ -166,8 +159,8 @@ impl Atlas {
         let mut wanted = vec![false; self.n_states()];
         let mut named = vec![false; self.n_states()];
         named[0] = true;
-        for run in self.index.chunk_by(|&a, &b| self.hashes[a as usize] == self.hashes[b as usize]) {
-            for &state in run.iter().take(width) {
+        for class in self.index.classes() {
+            for state in class.iter().take(width).map(|&entry| state_of(entry)) {
                 named[state as usize] |= keep(usize::from(quads[state as usize]), self.hexes_of(state));
             }
         }
@@ -204,9 +197,10 @@ impl Atlas {
     pub fn stats(&self) -> AtlasStats {
         let quads = self.quads();
         let mut classes = std::collections::BTreeMap::<usize, ClassStats>::new();
-        for run in self.index.chunk_by(|&a, &b| self.hashes[a as usize] == self.hashes[b as usize]) {
-            let hexes = self.hexes_of(run[0]);
-            let entry = classes.entry(usize::from(quads[run[0] as usize])).or_default();
+        for class in self.index.classes() {
+            let smallest = state_of(class[0]);
+            let hexes = self.hexes_of(smallest);
+            let entry = classes.entry(usize::from(quads[smallest as usize])).or_default();
             entry.fewest = if entry.classes == 0 { hexes } else { entry.fewest.min(hexes) };
             entry.most = entry.most.max(hexes);
             entry.hexes += u64::from(hexes);

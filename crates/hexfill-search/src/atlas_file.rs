@@ -294,7 +294,8 @@ impl Atlas {
         if xxh3_64(&body[8..]) != u64_at(body, 0) {
             return Err("checksum does not match");
         }
-        let mut data = Vec::new();
+        // About what atlases come to; more is allocated as it is met.
+        let mut data = Vec::with_capacity(2 * body.len());
         DeflateDecoder::new(&body[8..]).read_to_end(&mut data).map_err(|_| "broken deflate stream")?;
         let mut data = data.as_slice();
         let n_levels = read_varint(&mut data).ok_or("truncated")?;

@@ -96,10 +96,9 @@ impl Canonical {
             }
             kinds[usize::from(d)] = pair;
         }
-        let rarest = (0..=255u8)
-            .filter(|&k| count[usize::from(k)] > 0)
-            .min_by_key(|&k| count[usize::from(k)])
-            .expect("a cavity has darts");
+        // The smallest of the rarest kinds, with the count before the kind in one number; kinds that do not occur come last.
+        let ranks = count.iter().zip(0u16..).map(|(&count, kind)| u16::from(count.wrapping_sub(1)) << 8 | kind);
+        let rarest = ranks.fold(u16::MAX, u16::min) as u8;
         for d in 0..n_darts as u8 {
             for (i, mirrored) in [false, true].into_iter().enumerate() {
                 if kinds[usize::from(d)][i] == rarest {

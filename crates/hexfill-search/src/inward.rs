@@ -9,7 +9,7 @@ use crate::atlas::Atlas;
 use crate::ball::mirror_image;
 use crate::canonical::Canonical;
 use crate::cavity::{Cavity, MAX_QUADS};
-use crate::flip::{apply, legal_flips};
+use crate::flip::{Placement, apply, legal_flips};
 use crate::grow::class_hash;
 use hexfill_mesh::{Context, HexMesh, QuadSurface, StopReason};
 use rayon::prelude::*;
@@ -72,13 +72,45 @@ struct Hole {
     last: Option<u32>,
 }
 
+impl Hole {
+    /// The hex of a flip in mesh vertices; the vertices it brings are numbered on.
+    fn hex(&self, placement: &Placement) -> [u32; 8] {
+        placement.corners.map(|c| self.id(c))
+    }
+
+    fn id(&self, v: u8) -> u32 {
+        let v = usize::from(v);
+        self.ids.get(v).copied().unwrap_or_else(|| self.n_vertices + (v - self.ids.len()) as u32)
+    }
+
+    /// What is left after a flip whose hex is `last` of the trail.
+    fn after(&self, placement: &Placement, last: u32) -> Self {
+        let (cavity, before) = apply(&self.cavity, placement);
+        let fresh = placement.corners.iter().filter(|&&c| usize::from(c) >= self.ids.len()).count() as u32;
+        Self {
+            ids: before[..cavity.n_vertices()].iter().map(|&v| self.id(v)).collect(),
+            n_vertices: self.n_vertices + fresh,
+            last: Some(last),
+            cavity,
+        }
+    }
+}
+
+/// A flip of a hole on the beam: as small as it can be sorted by, since most are dropped. Mesh vertices ascend with those of the
+/// cavity, so that the corners of two flips of one hole compare as their hexes do.
 struct Child {
-    hole: Hole,
-    hex: [u32; 8],
-    parent: usize,
-    key: u128,
-    class: u128,
     score: u32,
+    parent: u32,
+    key: u128,
+    placement: Placement,
+    /// Fewest hexes on record for what is left.
+    hint: Option<u32>,
+}
+
+/// What a thread works out children with.
+struct Workspace {
+    canonical: Canonical,
+    name: Vec<u8>,
 }
 
 /// Fills a sphere of at most [`MAX_QUADS`] quads: the atlas first, then inward flips.
@@ -201,14 +233,15 @@ impl Search<'_> {
     /// One level inward.
     fn step(&mut self, beam: Vec<Hole>, depth: u32, ctx: &Context<'_>) -> (Vec<Hole>, u64, Option<StopReason>) {
         let most = self.most_allowed();
+        let workspace = || Workspace { canonical: Canonical::new(), name: Vec::new() };
         let mut children: Vec<Child> = beam
             .par_iter()
             .enumerate()
-            .map_init(Canonical::new, |canonical, (parent, hole)| {
+            .map_init(workspace, |workspace, (parent, hole)| {
                 if ctx.stop().is_some() {
                     return Vec::new();
                 }
-                self.children(hole, parent, depth, most, canonical)
+                self.children(hole, parent as u32, depth, most, workspace)
             })
             .flatten_iter()
             .collect();
@@ -216,16 +249,17 @@ impl Search<'_> {
             return (Vec::new(), 0, Some(stop));
         }
         let looked_at = children.len() as u64;
-        children.sort_by_key(|c| (c.score, c.key, c.parent, c.hex));
+        children.retain(|c| !self.seen.contains(&c.key));
+        children.sort_unstable_by_key(|c| (c.score, c.key, c.parent, c.placement.corners));
         children.dedup_by_key(|c| c.key);
-        children.retain(|c| self.seen.insert(c.key));
+        self.seen.extend(children.iter().map(|c| c.key));
         children.truncate(self.options.beam);
         let mut next = Vec::with_capacity(children.len());
         for child in children {
-            let before = beam[child.parent].last;
-            self.trail.push(Glued { hex: child.hex, before });
-            let hole = Hole { last: Some(self.trail.len() as u32 - 1), ..child.hole };
-            if self.atlas.hexes_hint(child.class).is_some_and(|h| depth + h <= self.most_allowed()) {
+            let parent = &beam[child.parent as usize];
+            let hole = parent.after(&child.placement, self.trail.len() as u32);
+            self.trail.push(Glued { hex: parent.hex(&child.placement), before: parent.last });
+            if child.hint.is_some_and(|h| depth + h <= self.most_allowed()) {
                 self.close_with_atlas(&hole, depth);
                 if self.is_satisfied() {
                     return (Vec::new(), looked_at, None);
@@ -236,44 +270,28 @@ impl Search<'_> {
         (next, looked_at, None)
     }
 
-    fn children(&self, hole: &Hole, parent: usize, depth: u32, most: u32, canonical: &mut Canonical) -> Vec<Child> {
+    fn children(&self, hole: &Hole, parent: u32, depth: u32, most: u32, workspace: &mut Workspace) -> Vec<Child> {
+        let Workspace { canonical, name } = workspace;
         let mut children = Vec::new();
         for placement in legal_flips(&hole.cavity, MAX_QUADS.min(hole.cavity.n_quads() + 4)) {
-            let (cavity, before) = apply(&hole.cavity, &placement);
+            let (cavity, _) = apply(&hole.cavity, &placement);
             canonical.compute(&cavity);
-            let class = class_hash(canonical.code());
-            let n = cavity.n_vertices();
-            let image = canonical.blocked_image(&cavity).0;
-            let mut name = canonical.code().to_vec();
-            name.extend(image[..n].iter().flat_map(|row| row.to_le_bytes()));
-            let hint = self.atlas.hexes_hint(class);
+            let hint = self.atlas.hexes_hint(class_hash(canonical.code()));
             if hint.is_some_and(|h| depth + h > most) {
                 continue;
             }
-            let old = hole.cavity.n_vertices();
-            let id = |v: u8| {
-                let v = usize::from(v);
-                if v < old { hole.ids[v] } else { hole.n_vertices + (v - old) as u32 }
-            };
-            let fresh = placement.corners.iter().filter(|&&c| usize::from(c) >= old).count() as u32;
+            let image = canonical.blocked_image(&cavity).0;
+            name.clear();
+            name.extend_from_slice(canonical.code());
+            for row in &image[..cavity.n_vertices()] {
+                name.extend_from_slice(&row.to_le_bytes());
+            }
             let score = match hint {
                 // Known fillings first, fewest hexes first; then small holes with few blocked pairs.
                 Some(h) => h,
                 None => 100 + 16 * cavity.n_quads() as u32 + cavity.n_blocked(),
             };
-            children.push(Child {
-                hole: Hole {
-                    ids: before[..n].iter().map(|&v| id(v)).collect(),
-                    n_vertices: hole.n_vertices + fresh,
-                    last: None,
-                    cavity,
-                },
-                hex: placement.corners.map(id),
-                parent,
-                key: xxh3_128(&name),
-                class,
-                score,
-            });
+            children.push(Child { score, parent, key: xxh3_128(name), placement, hint });
         }
         children
     }

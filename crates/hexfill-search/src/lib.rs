@@ -2,6 +2,7 @@
 
 mod atlas;
 mod atlas_file;
+mod atlas_index;
 mod ball;
 mod canonical;
 mod cavity;

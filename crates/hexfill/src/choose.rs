@@ -4,6 +4,7 @@
 //! The order of meshes: certified ones first, then those whose worst scaled Jacobian is at least [`GOOD`], then fewest
 //! hexes for their quality ([`Prefer`]).
 
+use crate::effort::{Budget, Effort};
 use crate::fill::{FillError, FillOptions, FillResult, Filled, Route, Strategy, construct, search, shelled, verify};
 use crate::geometry::{Placed, place, place_as_it_is, place_best, place_points};
 use crate::last_resort::{LastResort, leaving_time};
@@ -11,8 +12,9 @@ use crate::no_room::no_room;
 use crate::placed_fill::{PlaceOptions, PlacedFill};
 use crate::problem::Problem;
 use crate::simplify::carried_positions;
+use crate::stored::stored_mesh;
 use hexfill_embed::quick_star_bound;
-use hexfill_mesh::{Context, StopReason, VertexId};
+use hexfill_mesh::{Context, StopReason, VertexId, hex_isomorphism};
 use hexfill_search::MAX_QUADS;
 use hexfill_shell::{Layer, SplitOptions, cut_boundary_layers, split_stars};
 use serde::Serialize;
@@ -36,12 +38,8 @@ pub enum Prefer {
 
 /// Surfaces of at most so many quads have many fillings in the atlas.
 const SMALLEST: usize = 24;
-/// Fillings of them that are looked for where the first has no valid coordinates.
-const MORE_FILLINGS: usize = 50;
 /// Starts for each of these: the first ones find most of what many find.
 const STARTS: u32 = 2;
-/// Cavities inward flips may look at where shelling found nothing valid.
-const MOST_CAVITIES: u64 = 30_000;
 
 /// Surfaces of more quads are constructed only if nothing else filled them.
 const MOST_CONSTRUCTED: usize = 1000;
@@ -81,7 +79,9 @@ pub(crate) fn fill_best(
 ) -> Result<PlacedFill, FillError> {
     let result = FillResult { meshes: Vec::new(), stop: StopReason::Finished, tried: Vec::new() };
     let early = leaving_time(problem, options, ctx);
-    let mut trial = Trial { problem, options, boundary, how, ctx, early, embed, result, best: None, seen: Vec::new() };
+    let budget = options.effort.budget(&options.shell);
+    let mut trial =
+        Trial { problem, options, boundary, how, ctx, early, embed, budget, result, best: None, seen: Vec::new() };
     trial.look_up()?;
     trial.shell()?;
     let why_none = trial.go_on()?;
@@ -101,6 +101,7 @@ struct Trial<'a> {
     /// For engines that may find nothing.
     early: Context<'a>,
     embed: &'a hexfill_embed::Options,
+    budget: Budget,
     /// What the engines say; their meshes stay here until they are considered.
     result: FillResult,
     best: Option<(Rank, Filled, Placed)>,
@@ -109,19 +110,34 @@ struct Trial<'a> {
 }
 
 impl<'a> Trial<'a> {
-    /// Looks a small sphere up in the atlas.
+    /// Looks a small sphere up in the atlas, and any surface in the catalogue.
     fn look_up(&mut self) -> Result<(), FillError> {
-        if self.is_small() && self.options.strategy == Strategy::Auto {
+        if self.options.strategy != Strategy::Auto {
+            return Ok(());
+        }
+        if self.is_small() {
             // One cavity: the surface itself.
             self.flip_inward(1)?;
+        }
+        let Some(mesh) = stored_mesh(&self.problem.surface) else { return Ok(()) };
+        let is_new = self.best.as_ref().is_none_or(|(_, known, _)| hex_isomorphism(&known.mesh, &mesh) == Ok(None));
+        if is_new && mesh.n_hexes() as u64 <= u64::from(self.options.max_hexes) {
+            verify(&self.problem.surface, &mesh, Route::Catalogue)?;
+            self.consider(Filled { mesh, route: Route::Catalogue, start: None, stages: Vec::new(), coarse: None })?;
         }
         Ok(())
     }
 
     /// Shells the surface.
     fn shell(&mut self) -> Result<(), FillError> {
-        for filled in shelled(self.problem, self.options, &self.early, &mut self.result)? {
-            if self.ctx.stop().is_some() && self.best.is_some() {
+        if self.options.effort == Effort::Fast && self.is_enough() && self.options.layers.is_none() {
+            return Ok(());
+        }
+        let how = FillOptions { shell: self.budget.shell.clone(), ..self.options.clone() };
+        for filled in shelled(self.problem, &how, &self.early, &mut self.result)? {
+            if self.best.is_some()
+                && (self.ctx.stop().is_some() || self.options.effort == Effort::Fast && self.is_enough())
+            {
                 break;
             }
             self.consider(filled)?;
@@ -131,13 +147,13 @@ impl<'a> Trial<'a> {
 
     /// Asks the other engines where no mesh is good yet. Says why none can be valid, if that is known.
     fn go_on(&mut self) -> Result<Option<String>, FillError> {
-        if self.options.strategy != Strategy::Auto || self.is_good() || self.ctx.stop().is_some() {
+        if self.options.strategy != Strategy::Auto || self.is_enough() || self.ctx.stop().is_some() {
             return Ok(None);
         }
         let why_none = no_room(&self.problem.surface, self.boundary);
         if self.is_small() && why_none.is_none() {
-            if self.class() != Some(1) {
-                self.flip_inward(self.options.inward_cavities.min(MOST_CAVITIES))?;
+            if self.class() != Some(1) || self.budget.enough.is_none() {
+                self.flip_inward(self.options.inward_cavities.min(self.budget.cavities))?;
             }
             self.look_at_more_fillings()?;
         }
@@ -172,10 +188,10 @@ impl<'a> Trial<'a> {
 
     /// Looks at many fillings of one of the smallest surfaces, which the atlas knows.
     fn look_at_more_fillings(&mut self) -> Result<(), FillError> {
-        if self.is_good() || self.problem.surface.n_quads() > SMALLEST || self.ctx.stop().is_some() {
+        if self.is_enough() || self.problem.surface.n_quads() > SMALLEST || self.ctx.stop().is_some() {
             return Ok(());
         }
-        let more = FillOptions { count: MORE_FILLINGS, ..self.options.clone() };
+        let more = FillOptions { count: self.budget.fillings, ..self.options.clone() };
         let mut found = FillResult { meshes: Vec::new(), stop: StopReason::Finished, tried: Vec::new() };
         search(&self.problem.surface, &more, &self.early, &mut found)?;
         if found.stop != StopReason::Finished {
@@ -204,8 +220,9 @@ impl<'a> Trial<'a> {
         self.best.as_ref().map(|((class, _), ..)| *class)
     }
 
-    fn is_good(&self) -> bool {
-        self.class() == Some(0)
+    /// Whether no other engine need be asked.
+    fn is_enough(&self) -> bool {
+        self.class().zip(self.budget.enough).is_some_and(|(class, enough)| class <= enough)
     }
 
     /// Considers the meshes that an engine found.
@@ -245,12 +262,14 @@ impl<'a> Trial<'a> {
             // Its surface vertices lie where the surface's do, so there is one way to place it.
             let mut one = *self.embed;
             one.starts = one.starts.max(1);
-            one.programs = one.programs.min(SCREENING);
+            one.programs = one.programs.min(self.budget.screening);
             one.smooth_start = true;
             let placed = place_as_it_is(&filled, self.boundary, Some(&one), &self.limited());
             self.placed_from_coarse(&filled, placed, one)
         } else {
-            place(&mut filled, self.problem, self.boundary, Some(self.embed), &self.limited())
+            let mut how = *self.embed;
+            how.programs = how.programs.min(self.budget.others.unwrap_or(usize::MAX));
+            place(&mut filled, self.problem, self.boundary, Some(&how), &self.limited())
         };
         let rank = rank(&filled, &placed, prefer);
         let valid = if placed.is_certified() { format!("{:.3}", placed.worst()) } else { "not certified".to_owned() };
@@ -305,14 +324,14 @@ impl<'a> Trial<'a> {
     /// Raises the best mesh further, if it was only screened.
     fn polish(&mut self) {
         let limited = self.limited();
-        let Some((_, filled, placed)) = &mut self.best else { return };
+        let Some((_, filled, placed)) = self.best.as_mut().filter(|_| self.budget.programs > 0) else { return };
         let open = placed.embedding.as_ref().is_some_and(|e| placed.worst() < RELATIVE * e.target);
         if filled.route != Route::Shelling || !placed.is_certified() || !open || limited.stop().is_some() {
             return;
         }
         let mut more = *self.embed;
         more.starts = 1;
-        more.programs = more.programs.min(PROGRAMS);
+        more.programs = more.programs.min(self.budget.programs);
         let from = Filled { start: Some(placed.points.clone()), ..filled.clone() };
         let polished = place_as_it_is(&from, self.boundary, Some(&more), &limited);
         if polished.is_certified() && polished.worst() > placed.worst() {
@@ -358,13 +377,9 @@ impl<'a> Trial<'a> {
 const RELATIVE: f64 = 0.999;
 
 fn words(filled: &Filled) -> String {
-    format!("{} hexes by {}", filled.mesh.n_hexes(), filled.route.words())
+    let n = filled.mesh.n_hexes();
+    format!("{n} hex{} by {}", if n == 1 { "" } else { "es" }, filled.route.words())
 }
-
-/// Linear programs for a shelled mesh while the best is looked for, and once it is found: it is near its best where it
-/// starts, and the last digits take most of the time.
-const SCREENING: usize = 5;
-const PROGRAMS: usize = 20;
 
 /// Stars that reach no more than this leave no room for a valid mesh.
 const NO_ROOM: f64 = 1e-6;
@@ -373,6 +388,7 @@ impl Route {
     /// In words, for reports.
     pub fn words(self) -> &'static str {
         match self {
+            Self::Catalogue => "the catalogue",
             Self::Atlas => "atlas look-up",
             Self::Shelling => "shelling",
             Self::InwardFlips => "inward flips and atlas",

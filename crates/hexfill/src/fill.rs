@@ -2,12 +2,13 @@
 
 use crate::choose::Prefer;
 use crate::components::{fill_apart, solids};
+use crate::effort::Effort;
 use crate::geometry::boundary_points;
 use crate::last_resort::{LastResort, leaving_time};
 use crate::problem::Problem;
 use crate::simplify::simplify_construction;
 use hexfill_check::{Judged, Level, judge};
-use hexfill_construct::CellChoice;
+use hexfill_construct::{CellChoice, ConstructOptions};
 use hexfill_io::{MeshData, TagName, TagOn};
 use hexfill_mesh::{
     Context, HexMesh, ImproperPair, Offenders, QuadSurface, StopReason, hex_signature, improper_pairs, sheets,
@@ -82,6 +83,8 @@ pub struct FillOptions {
     pub simplify: Option<SimplifyOptions>,
     /// How to shell.
     pub shell: ShellOptions,
+    /// How long to look for a better mesh, where there are coordinates.
+    pub effort: Effort,
     /// What to prefer among certified meshes.
     pub prefer: Prefer,
     /// Boundary layers under the whole surface, cut once the mesh has positions; `None`: none.
@@ -104,6 +107,7 @@ impl Default for FillOptions {
             cells: CellChoice::Embeddable,
             simplify: None,
             shell: ShellOptions::default(),
+            effort: Effort::default(),
             prefer: Prefer::default(),
             layers: None,
         }
@@ -115,6 +119,8 @@ impl Default for FillOptions {
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Route {
+    /// The best known mesh of a surface of the catalogue.
+    Catalogue,
     /// Looked up in the atlas.
     Atlas,
     /// Swept inward by the surface's dual curves.
@@ -445,13 +451,13 @@ pub(crate) fn construct(
     let given = matches!(options.interior, InteriorFrom::Tets(_));
     let variants = if given || options.count == 1 { 1 } else { VARIANTS_PER_MESH * options.count as u64 };
     for variant in 0..variants {
-        let tets: Option<Box<dyn hexfill_construct::InteriorTets>> = match &options.interior {
+        let tets: Option<Arc<dyn hexfill_construct::InteriorTets>> = match &options.interior {
             InteriorFrom::BuiltIn => None,
-            InteriorFrom::Tets(tets) => Some(Box::new(hexfill_construct::GivenTets::clone(tets))),
-            InteriorFrom::Tetgen(program) => Some(Box::new(program.clone())),
+            InteriorFrom::Tets(tets) => Some(tets.clone()),
+            InteriorFrom::Tetgen(program) => Some(Arc::new(program.clone())),
         };
-        let how =
-            hexfill_construct::Options { tets, cells: options.cells, variant, ..hexfill_construct::Options::default() };
+        let cells = options.cells;
+        let how = ConstructOptions { tets, cells, variant, ..ConstructOptions::default() };
         let made = match hexfill_construct::construct(&problem.surface, points.as_deref(), &how, ctx) {
             Err(hexfill_construct::ConstructError::Stopped(reason)) => {
                 result.stop = reason;

@@ -36,6 +36,14 @@ pub struct GeometryReport {
     pub corner_scaled_jacobian: Option<f64>,
     /// Certified lower bound of the least scaled Jacobian over whole hexes; -1 if a hex is not certified.
     pub certified_scaled_jacobian: Option<f64>,
+    /// Mean of the certified scaled Jacobians; hexes that are not certified count as 0.
+    pub mean_scaled_jacobian: Option<f64>,
+    /// Hexes by certified scaled Jacobian, in ten steps of 0.1 from 0; hexes that are not certified are in none of them.
+    pub histogram: Option<[usize; 10]>,
+    /// The largest volume of a hex divided by the smallest; absent if one is not positive.
+    pub volume_ratio: Option<f64>,
+    /// The largest ratio of the longest to the shortest edge of a hex.
+    pub edge_ratio: Option<f64>,
     /// What the embedding reports.
     pub embedding: Option<EmbedReport>,
     /// Why the boundary's positions cannot be used.
@@ -241,6 +249,17 @@ impl Placed {
         self.cells.iter().map(|c| c.certified_lower).fold(f64::INFINITY, f64::min)
     }
 
+    /// The scaled Jacobians of the hexes that are certified.
+    fn certified(&self) -> impl Iterator<Item = f64> + '_ {
+        self.cells.iter().filter(|c| c.valid).map(|c| c.certified_lower.max(0.0))
+    }
+
+    fn volume_ratio(&self) -> Option<f64> {
+        let volumes = || self.cells.iter().map(|c| c.volume);
+        let (least, most) = (volumes().fold(f64::INFINITY, f64::min), volumes().fold(0.0, f64::max));
+        (least > 0.0 && (most / least).is_finite()).then_some(most / least)
+    }
+
     /// Placements with fewer hexes that are not certified rank higher, then those with a larger worst scaled Jacobian.
     fn rank(&self) -> (std::cmp::Reverse<usize>, f64) {
         (std::cmp::Reverse(self.cells.iter().filter(|c| !c.valid).count()), self.worst())
@@ -255,6 +274,14 @@ impl Placed {
             hexes: self.cells.len(),
             corner_scaled_jacobian: judged.then_some(corner),
             certified_scaled_jacobian: judged.then(|| self.worst()),
+            mean_scaled_jacobian: judged.then(|| self.certified().sum::<f64>() / self.cells.len() as f64),
+            histogram: judged.then(|| {
+                let mut steps = [0; 10];
+                self.certified().for_each(|x| steps[((10.0 * x) as usize).min(9)] += 1);
+                steps
+            }),
+            volume_ratio: self.volume_ratio(),
+            edge_ratio: judged.then(|| self.cells.iter().map(|c| c.edge_ratio).fold(1.0, f64::max)),
             embedding: self.embedding.clone(),
             refused: self.refused.clone(),
             ways: self.ways,
@@ -277,6 +304,19 @@ impl Placed {
     }
 }
 
+impl GeometryReport {
+    /// A line about all hexes, not only the worst; `None` if nothing was judged.
+    pub fn distribution(&self) -> Option<String> {
+        let (mean, steps) = (self.mean_scaled_jacobian?, self.histogram?);
+        let shown: Vec<String> =
+            steps.iter().enumerate().filter(|(_, n)| **n > 0).map(|(i, n)| format!("{n} from 0.{i}")).collect();
+        let digits = usize::from(self.volume_ratio.is_some_and(|r| r < 100.0));
+        let volumes =
+            self.volume_ratio.map_or(String::new(), |r| format!("; volumes differ by a factor of {r:.digits$}"));
+        Some(format!("mean {mean:.3}; {}{volumes}", shown.join(", ")))
+    }
+}
+
 impl std::fmt::Display for GeometryReport {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let (Some(certified), Some(corner)) = (self.certified_scaled_jacobian, self.corner_scaled_jacobian) else {
@@ -288,8 +328,8 @@ impl std::fmt::Display for GeometryReport {
         if self.certified == self.hexes {
             return write!(
                 f,
-                "det J > 0 certified in all {} hexes, scaled Jacobian at least {certified:.6} (corners {corner:.6})",
-                self.hexes
+                "det J > 0 certified in {}, scaled Jacobian at least {certified:.6} (corners {corner:.6})",
+                if self.hexes == 1 { "the hex".to_owned() } else { format!("all {} hexes", self.hexes) }
             );
         }
         write!(f, "det J > 0 certified in {} of {} hexes only", self.certified, self.hexes)?;

@@ -15,16 +15,25 @@
 pub mod catalog;
 mod choose;
 mod components;
+mod describe;
+mod doctor;
+mod effort;
 mod fill;
 mod geometry;
 mod last_resort;
+mod limits;
 mod no_room;
 mod placed_fill;
 mod placement;
 mod problem;
 mod simplify;
+mod stored;
+mod threads;
 
 pub use choose::Prefer;
+pub use describe::{ChordInfo, MeshInfo, PartInfo, SheetInfo, SurfaceInfo, describe_mesh, describe_surface};
+pub use doctor::{Cure, CureOptions, Diagnosis, crossing_quads, cure, doctor};
+pub use effort::Effort;
 pub use fill::{
     FillError, FillOptions, FillReport, FillResult, Filled, InteriorFrom, Route, Strategy, check_fillable, fill,
     mesh_data,
@@ -33,10 +42,13 @@ pub use geometry::{GeometryReport, Placed, boundary_points, place, place_best, s
 pub use hexfill_mesh::{Context, Progress, StopReason};
 pub use hexfill_search::{Collapse, SimplifyOptions, SimplifyReport};
 pub use hexfill_shell::{BoundaryLayers, ShellOptions};
+pub use limits::{LimitsInfo, Named};
 pub use placed_fill::{PlaceOptions, PlacedFill, fill_placed};
 pub use problem::{Problem, ProblemError, is_named};
-pub use simplify::{SimplifiedData, SimplifyError, simplify};
+pub use simplify::{SimplifiedData, SimplifyError, default_balls, simplify};
+pub use threads::{MAX_THREADS, ThreadsError, with_threads};
 pub use {
-    hexfill_check as check, hexfill_construct as construct, hexfill_embed as embed, hexfill_enumerate as enumerate,
-    hexfill_io as io, hexfill_mesh as mesh, hexfill_search as search, hexfill_shell as shell, hexfill_view as view,
+    hexfill_check as check, hexfill_construct as construct, hexfill_doctor as diagnosis, hexfill_embed as embed,
+    hexfill_enumerate as enumerate, hexfill_io as io, hexfill_mesh as mesh, hexfill_search as search,
+    hexfill_shell as shell, hexfill_view as view,
 };

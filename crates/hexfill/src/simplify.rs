@@ -43,6 +43,11 @@ pub struct SimplifiedData {
     pub report: SimplifyReport,
 }
 
+/// How many balls to try where neither a number nor a time is given.
+pub fn default_balls(hexes: usize) -> u64 {
+    (10 * hexes as u64).max(20_000)
+}
+
 /// Collapses closed sheets and columns and replaces balls of hexes by smaller fillings from the atlas (without one:
 /// [`simplification_atlas`]); the boundary stays as it is, its positions bit for bit. What comes back has passed levels 1 to 3 of the judge, its boundary being the input's; if
 /// nothing smaller was found it is the input. Embed again afterwards: new interior points only have means of positions.

@@ -42,6 +42,12 @@ pub struct FillArgs {
     /// Which mesh to prefer among those that are certified with a worst scaled Jacobian of at least 0.2.
     #[arg(long, value_enum, default_value = "balance")]
     prefer: PreferArg,
+    /// The first mesh with a certificate, in a fraction of the time.
+    #[arg(long, conflicts_with = "best")]
+    fast: bool,
+    /// Look on though a good mesh is found: more candidates, each raised as far as it goes; many times the time (see --time-limit).
+    #[arg(long)]
+    best: bool,
     /// Put this many layers of hexahedra under the whole surface (boundary layers for flow).
     #[arg(long, value_name = "K", conflicts_with_all = ["count", "best_of", "no_embed", "improve"], value_parser = clap::value_parser!(u32).range(1..=1000))]
     layers: Option<u32>,
@@ -163,7 +169,8 @@ struct Output {
 pub fn run(args: &FillArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
     let start = Instant::now();
     check_files(args, console)?;
-    let problem = files::load_problem(&args.surface, &args.reading)?;
+    let mut problem = files::load_problem(&args.surface, &args.reading)?;
+    problem.notes.extend(crossing_note(&problem));
     for note in &problem.notes {
         console.note(note);
     }
@@ -223,6 +230,20 @@ pub fn run(args: &FillArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Res
     Ok(exit)
 }
 
+/// A word on quads that cross: work on them is in vain.
+fn crossing_note(problem: &Problem) -> Option<String> {
+    let pairs = hexfill::crossing_quads(problem);
+    let first: Vec<String> = pairs.iter().take(3).map(|[a, b]| format!("{a} and {b}")).collect();
+    let more = if pairs.len() > 3 { ", ..." } else { "" };
+    (!pairs.is_empty()).then(|| {
+        format!(
+            "{} pairs of quads cross or touch ({}{more}): a mesh of this surface overlaps itself; see `hexfill doctor`",
+            pairs.len(),
+            first.join(", ")
+        )
+    })
+}
+
 /// Refuses files that cannot be written, or would be written twice, before any work is done.
 fn check_files(args: &FillArgs, console: &Console) -> anyhow::Result<()> {
     if let Some(output) = &args.output {
@@ -280,6 +301,11 @@ fn fill_options(args: &FillArgs, own_log: Option<PathBuf>, ctx: &Context<'_>) ->
         },
         simplify: simplification(args, ctx),
         shell: hexfill::ShellOptions::default(),
+        effort: match (args.fast, args.best) {
+            (true, _) => hexfill::Effort::Fast,
+            (_, true) => hexfill::Effort::Best,
+            _ => hexfill::Effort::Normal,
+        },
         prefer: match args.prefer {
             PreferArg::Balance => hexfill::Prefer::Balance,
             PreferArg::Hexes => hexfill::Prefer::Hexes,
@@ -414,6 +440,9 @@ fn say(output: &Output, args: &FillArgs, console: &Console) {
         match &mesh.geometry {
             Some(geometry) => {
                 console.say(format!("geometry: {geometry}"));
+                if let Some(line) = geometry.distribution().filter(|_| geometry.hexes > 1) {
+                    console.say(format!("scaled Jacobians: {line}"));
+                }
                 if geometry.ways > 1 {
                     let ways = geometry.ways;
                     console

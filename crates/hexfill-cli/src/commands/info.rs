@@ -1,19 +1,11 @@
 //! `hexfill info SURFACE|MESH`.
 
-use crate::commands::limits::{self, LimitsInfo};
 use crate::console::Console;
 use crate::exit::Exit;
 use crate::files;
 use anyhow::bail;
-use hexfill::construct::{Existence, existence};
 use hexfill::io::MeshData;
-use hexfill::mesh::{
-    HexMesh, QuadSurface, bipartition, chords, hex_signature, improper_pairs, key, sheets, surface_automorphisms,
-    surface_signature,
-};
-use hexfill::{Problem, check_fillable};
-use serde::Serialize;
-use std::collections::BTreeMap;
+use hexfill::{Problem, SurfaceInfo, describe_mesh, describe_surface};
 use std::fmt::Write as _;
 use std::io::Write as _;
 
@@ -28,70 +20,6 @@ pub struct InfoArgs {
     #[arg(long, value_name = "FILE")]
     cycle: Option<String>,
 }
-
-#[derive(Serialize)]
-struct SurfaceInfo {
-    kind: &'static str,
-    quads: usize,
-    vertices: usize,
-    edges: usize,
-    components: usize,
-    /// Quads and genus of each component, where there are several.
-    parts: Vec<PartInfo>,
-    genus: u64,
-    euler: i64,
-    bipartite: bool,
-    odd_cycle: Option<Vec<u32>>,
-    /// "exists", "none" or "unknown".
-    hex_mesh: &'static str,
-    because: String,
-    /// The odd cycle that bounds inside, if that is why there is none.
-    bounding_cycle: Option<Vec<[u32; 2]>>,
-    /// How many pairs of quads share more than a vertex or an edge, and the first ones.
-    improper_pairs: usize,
-    first_improper_pairs: Vec<[u32; 2]>,
-    degrees: BTreeMap<u32, usize>,
-    chords: Vec<ChordInfo>,
-    key: String,
-    automorphisms: Option<usize>,
-    signature: Option<String>,
-    /// What the positions allow any mesh to reach; absent without positions.
-    limits: Option<LimitsInfo>,
-}
-
-#[derive(Serialize)]
-struct PartInfo {
-    quads: usize,
-    genus: u64,
-}
-
-#[derive(Serialize)]
-struct ChordInfo {
-    quads: usize,
-    self_crossings: usize,
-}
-
-#[derive(Serialize)]
-struct MeshInfo {
-    kind: &'static str,
-    hexes: usize,
-    vertices: usize,
-    interior_vertices: usize,
-    boundary_quads: usize,
-    sheets: Vec<SheetInfo>,
-    signature: Option<String>,
-    boundary: Option<SurfaceInfo>,
-}
-
-#[derive(Serialize)]
-struct SheetInfo {
-    hexes: usize,
-    self_crossings: usize,
-    boundary_chords: usize,
-}
-
-/// Larger surfaces are not searched for symmetries, nor printed as a signature.
-const SIGNATURE_LIMIT: usize = 20_000;
 
 /// Describes a surface or a mesh.
 pub fn run(args: &InfoArgs, console: &Console) -> anyhow::Result<Exit> {
@@ -117,7 +45,7 @@ pub fn run(args: &InfoArgs, console: &Console) -> anyhow::Result<Exit> {
     for note in &problem.notes {
         console.note(note);
     }
-    let info = describe(&problem.surface, problem.points.as_deref());
+    let info = describe_surface(&problem.surface, problem.points.as_deref());
     if console.json {
         console.print_json(&info)?;
     } else {
@@ -151,79 +79,6 @@ fn write_cycle(file: &str, cycle: &[[u32; 2]], points: &[[f64; 3]]) -> anyhow::R
         }
     }
     files::write_file(file, |out| out.write_all(text.as_bytes()))
-}
-
-/// Whether a hex mesh exists, why, and the cycle that forbids it.
-fn verdict(surface: &QuadSurface, points: Option<&[[f64; 3]]>) -> (&'static str, String, Option<Vec<[u32; 2]>>) {
-    if let Err(refusal) = check_fillable(surface) {
-        return ("none", refusal.to_string(), None);
-    }
-    match existence(surface, points) {
-        Existence::Exists { because } => ("exists", because.to_owned(), None),
-        Existence::OddCycleBounds { cycle } => {
-            let edges: Vec<[u32; 2]> = cycle.iter().map(|e| [e.0.0, e.1.0]).collect();
-            let shown: Vec<String> = cycle.iter().take(20).map(ToString::to_string).collect();
-            let more = if cycle.len() > 20 { " ..." } else { "" };
-            let because = format!("an odd cycle of {} edges bounds inside: {}{more}", cycle.len(), shown.join(" "));
-            ("none", because, Some(edges))
-        }
-        Existence::OddSolid { components, given } => {
-            let names: Vec<String> = components.iter().map(ToString::to_string).collect();
-            let (noun, bound) = if names.len() == 1 { ("component", "bounds") } else { ("components", "bound") };
-            let because = format!(
-                "{noun} {} {bound} one solid with {given} quads, an odd number: every hex mesh of a connected solid has an even number of boundary quads (Thurston 1993)",
-                names.join(", ")
-            );
-            ("none", because, None)
-        }
-        Existence::Unknown { reason } => ("unknown", reason, None),
-        Existence::OddQuads { given } => ("none", format!("the surface has {given} quads, an odd number"), None),
-        Existence::ImproperQuads { pairs } => ("none", format!("quads share too much: {pairs}"), None),
-        // A verdict of a later version of the library.
-        other => ("unknown", format!("{other:?}"), None),
-    }
-}
-
-fn describe(surface: &QuadSurface, points: Option<&[[f64; 3]]>) -> SurfaceInfo {
-    let small = surface.n_quads() <= SIGNATURE_LIMIT;
-    let colours = bipartition(surface);
-    let (hex_mesh, because, bounding_cycle) = verdict(surface, points);
-    let mut degrees = BTreeMap::new();
-    for v in 0..surface.n_vertices() {
-        let degree = surface.degree(hexfill::mesh::VertexId::new(v));
-        if degree > 0 {
-            *degrees.entry(degree).or_insert(0) += 1;
-        }
-    }
-    let chords = chords(surface);
-    let pairs = improper_pairs(surface);
-    let parts = if surface.n_components() > 1 { surface.split_components() } else { Vec::new() };
-    SurfaceInfo {
-        kind: "surface",
-        quads: surface.n_quads(),
-        vertices: surface.n_used_vertices(),
-        edges: surface.n_edges(),
-        components: surface.n_components(),
-        parts: parts.iter().map(|(s, _, _)| PartInfo { quads: s.n_quads(), genus: s.genus() }).collect(),
-        genus: surface.genus(),
-        euler: surface.euler_characteristic(),
-        bipartite: colours.is_ok(),
-        odd_cycle: colours.err().map(|c| c.vertices.iter().map(|v| v.0).collect()),
-        hex_mesh,
-        because,
-        bounding_cycle,
-        improper_pairs: pairs.count,
-        first_improper_pairs: pairs.first.iter().map(|p| p.quads.map(|q| q.0)).collect(),
-        degrees,
-        chords: chords
-            .iter()
-            .map(|c| ChordInfo { quads: c.length(), self_crossings: c.self_crossings.len() })
-            .collect(),
-        key: key(surface).to_string(),
-        automorphisms: (small && surface.n_components() == 1).then(|| surface_automorphisms(surface).len()),
-        signature: small.then(|| surface_signature(surface)),
-        limits: points.and_then(|points| limits::describe(surface, points)),
-    }
 }
 
 fn print_surface(info: &SurfaceInfo, console: &Console) -> anyhow::Result<()> {
@@ -282,27 +137,7 @@ fn print_surface(info: &SurfaceInfo, console: &Console) -> anyhow::Result<()> {
 }
 
 fn mesh_info(data: &MeshData, console: &Console) -> anyhow::Result<Exit> {
-    let highest = data.hexes.iter().flatten().max().map_or(0, |&v| v as usize + 1);
-    let mesh = HexMesh::try_new(data.points.len().max(highest), &data.hexes)?;
-    let quads: Vec<[u32; 4]> = mesh.boundary_quads().iter().map(|q| q.map(|v| v.0)).collect();
-    let boundary = QuadSurface::try_new(mesh.n_vertices(), &quads).ok();
-    let info = MeshInfo {
-        kind: "mesh",
-        hexes: mesh.n_hexes(),
-        vertices: mesh.used_vertices().iter().filter(|&&u| u).count(),
-        interior_vertices: mesh.n_interior_vertices(),
-        boundary_quads: quads.len(),
-        sheets: sheets(&mesh)
-            .iter()
-            .map(|s| SheetInfo {
-                hexes: s.n_hexes(),
-                self_crossings: s.self_crossings.len(),
-                boundary_chords: s.boundary.len(),
-            })
-            .collect(),
-        signature: (mesh.n_hexes() <= SIGNATURE_LIMIT).then(|| hex_signature(&mesh).ok()).flatten(),
-        boundary: boundary.as_ref().map(|b| describe(b, data.has_coordinates.then_some(data.points.as_slice()))),
-    };
+    let info = describe_mesh(data)?;
     if console.json {
         console.print_json(&info)?;
         return Ok(Exit::Done);

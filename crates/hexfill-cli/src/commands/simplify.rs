@@ -71,11 +71,6 @@ struct Output {
     seconds: f64,
 }
 
-/// How many balls to grow where neither a number nor a time is given.
-pub(crate) fn default_balls(hexes: usize) -> u64 {
-    (10 * hexes as u64).max(20_000)
-}
-
 /// Simplifies, judges, writes. Exit code 0 also if nothing smaller was found: the mesh is then written as it was.
 pub fn run(args: &SimplifyArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
     let start = Instant::now();
@@ -101,7 +96,7 @@ pub fn run(args: &SimplifyArgs, console: &Console, ctx: &Context<'_>) -> anyhow:
         _ if args.collapse_only.is_some() => 0,
         (Some(balls), _) => balls,
         (None, Some(_)) => u64::MAX,
-        (None, None) => default_balls(data.hexes.len()),
+        (None, None) => hexfill::default_balls(data.hexes.len()),
     };
     let mut options = SimplifyOptions::default().with_balls(balls);
     if args.collapse_only == Some(Which::Inside) {

@@ -11,9 +11,13 @@ use crate::data::MeshData;
 use crate::error::ReadError;
 use crate::orders::OVM_HALF_FACES;
 use crate::source::{Source, reserve};
-use crate::write::{Real, has_cell_tags, unquoted, write_point};
+use crate::write::{Real, has_cell_tags, unquoted, write_indices, write_point};
 use rustc_hash::FxHashMap;
 use std::io::{self, Write};
+
+mod topology;
+
+use topology::Topology;
 
 const FACE_MARK: &str = "hexfill:face";
 const CORNER_MARK: &str = "hexfill:corner";
@@ -365,83 +369,50 @@ fn corners(cycles: &[Vec<u32>], bottom: usize, n_nodes: usize) -> Option<Vec<u32
     closed.then_some(nodes)
 }
 
-/// Edges and faces on writing, each found again by its vertices.
-#[derive(Default)]
-struct Topology {
-    edges: Vec<[u32; 2]>,
-    edge_of: FxHashMap<[u32; 2], u64>,
-    faces: Vec<Vec<u64>>,
-    /// From the smallest rotation of a cycle to its half-face.
-    half_face_of: FxHashMap<Vec<u32>, u64>,
+/// More edges than numbers: refused before anything is written.
+fn check_size(data: &MeshData) -> io::Result<()> {
+    let sides: usize = data.faces().map(<[u32]>::len).sum();
+    let edges = [(12, data.hexes.len()), (6, data.tets.len()), (9, data.wedges.len()), (8, data.pyramids.len())];
+    let most = edges.into_iter().fold(sides, |sum, (each, n)| sum.saturating_add(n.saturating_mul(each)));
+    if most < 1 << 31 {
+        Ok(())
+    } else {
+        Err(io::Error::other("too large: OVM files are written with up to 2^31 edges"))
+    }
 }
 
-/// The rotation of a cycle that starts at its smallest vertex.
-fn canonical(cycle: &[u32]) -> Vec<u32> {
-    let start = (0..cycle.len()).min_by_key(|&k| cycle[k]).unwrap_or(0);
-    let mut rotated = cycle.to_vec();
-    rotated.rotate_left(start);
-    rotated
-}
+/// Half-faces of each kind of cell as its corners, counter-clockwise seen from inside.
+const TET: [&[usize]; 4] = [&[0, 1, 2], &[0, 2, 3], &[0, 3, 1], &[1, 3, 2]];
+const WEDGE: [&[usize]; 5] = [&[0, 1, 2], &[3, 5, 4], &[1, 0, 3, 4], &[2, 1, 4, 5], &[0, 2, 5, 3]];
+const PYRAMID: [&[usize]; 5] = [&[0, 1, 2, 3], &[1, 0, 4], &[2, 1, 4], &[3, 2, 4], &[0, 3, 4]];
 
-impl Topology {
-    fn half_edge(&mut self, from: u32, to: u32) -> u64 {
-        if let Some(&edge) = self.edge_of.get(&[from, to]) {
-            return 2 * edge;
+/// The half-faces of all cells, one after the other: hexes, tets, wedges, pyramids.
+fn half_faces(topology: &mut Topology, data: &MeshData) -> Vec<u32> {
+    let n_small = 4 * data.tets.len() + 5 * (data.wedges.len() + data.pyramids.len());
+    let mut all = Vec::with_capacity(6 * data.hexes.len() + n_small);
+    let mut cycle = Vec::with_capacity(4);
+    let mut add = |nodes: &[u32], facets: &[&[usize]]| {
+        for corners in facets {
+            cycle.clear();
+            cycle.extend(corners.iter().map(|&i| nodes[i]));
+            all.push(topology.half_face(&cycle));
         }
-        if let Some(&edge) = self.edge_of.get(&[to, from]) {
-            return 2 * edge + 1;
-        }
-        let edge = self.edges.len() as u64;
-        self.edges.push([from, to]);
-        self.edge_of.insert([from, to], edge);
-        2 * edge
-    }
-
-    fn add_face(&mut self, cycle: &[u32]) -> u64 {
-        let face = self.faces.len() as u64;
-        let half_edges = (0..cycle.len()).map(|k| self.half_edge(cycle[k], cycle[(k + 1) % cycle.len()])).collect();
-        self.faces.push(half_edges);
-        let reverse: Vec<u32> = cycle.iter().rev().copied().collect();
-        self.half_face_of.entry(canonical(cycle)).or_insert(2 * face);
-        self.half_face_of.entry(canonical(&reverse)).or_insert(2 * face + 1);
-        2 * face
-    }
-
-    fn half_face(&mut self, cycle: &[u32]) -> u64 {
-        match self.half_face_of.get(&canonical(cycle)) {
-            Some(&half_face) => half_face,
-            None => self.add_face(cycle),
-        }
-    }
+    };
+    let of_hex = OVM_HALF_FACES.each_ref().map(<[usize; 4]>::as_slice);
+    data.hexes.iter().for_each(|hex| add(hex, &of_hex));
+    data.tets.iter().for_each(|tet| add(tet, &TET));
+    data.wedges.iter().for_each(|wedge| add(wedge, &WEDGE));
+    data.pyramids.iter().for_each(|pyramid| add(pyramid, &PYRAMID));
+    all
 }
 
 pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
+    check_size(data)?;
     let mut topology = Topology::default();
-    for face in data.faces() {
-        topology.add_face(face);
-    }
-    let n_listed = topology.faces.len();
-    let mut cells: Vec<Vec<u64>> = Vec::new();
-    let mut add = |nodes: &[u32], half_faces: &[&[usize]]| {
-        cells.push(
-            half_faces
-                .iter()
-                .map(|corners| topology.half_face(&corners.iter().map(|&i| nodes[i]).collect::<Vec<_>>()))
-                .collect(),
-        );
-    };
-    for hex in &data.hexes {
-        add(hex, &OVM_HALF_FACES.each_ref().map(<[usize; 4]>::as_slice));
-    }
-    for tet in &data.tets {
-        add(tet, &[&[0, 1, 2], &[0, 2, 3], &[0, 3, 1], &[1, 3, 2]]);
-    }
-    for wedge in &data.wedges {
-        add(wedge, &[&[0, 1, 2], &[3, 5, 4], &[1, 0, 3, 4], &[2, 1, 4, 5], &[0, 2, 5, 3]]);
-    }
-    for pyramid in &data.pyramids {
-        add(pyramid, &[&[0, 1, 2, 3], &[1, 0, 4], &[2, 1, 4], &[3, 2, 4], &[0, 3, 4]]);
-    }
+    data.faces().for_each(|face| topology.add_face(face));
+    let n_listed = topology.n_faces();
+    let cells = half_faces(&mut topology, data);
+    let n_other = topology.n_faces() - n_listed;
     writeln!(out, "OVM ASCII")?;
     for name in &data.tag_names {
         writeln!(out, "#{}", name.line())?;
@@ -455,28 +426,36 @@ pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
     for [a, b] in &topology.edges {
         writeln!(out, "{a} {b}")?;
     }
-    writeln!(out, "Faces\n{}", topology.faces.len())?;
-    for face in &topology.faces {
-        write_list(out, face)?;
+    writeln!(out, "Faces\n{}", topology.n_faces())?;
+    for face in data.faces() {
+        let sides: Vec<u32> =
+            (0..face.len()).map(|k| topology.half_edge(face[k], face[(k + 1) % face.len()])).collect();
+        write_list(out, &sides)?;
     }
-    writeln!(out, "Polyhedra\n{}", cells.len())?;
-    for cell in &cells {
-        write_list(out, cell)?;
+    for face in n_listed..topology.n_faces() {
+        write_list(out, topology.half_edges(face))?;
     }
-    let n_other = topology.faces.len() - n_listed;
+    writeln!(out, "Polyhedra\n{}", data.cell_count())?;
+    let (hexes, rest) = cells.split_at(6 * data.hexes.len());
+    let (tets, others) = rest.split_at(4 * data.tets.len());
+    for (cells, facets) in [(hexes, 6), (tets, 4), (others, 5)] {
+        for cell in cells.chunks_exact(facets) {
+            write_list(out, cell)?;
+        }
+    }
     let face_marks = std::iter::repeat_n(1, n_listed).chain(std::iter::repeat_n(0, n_other));
-    property(out, "FProp", FACE_MARK, &face_marks.collect::<Vec<_>>())?;
-    let n_small = cells.len() - data.hexes.len();
+    property(out, "FProp", FACE_MARK, face_marks)?;
+    let n_small = data.cell_count() - data.hexes.len();
     let corners = data.hexes.iter().map(|hex| i64::from(hex[0])).chain(std::iter::repeat_n(-1, n_small));
-    property(out, "CProp", CORNER_MARK, &corners.collect::<Vec<_>>())?;
+    property(out, "CProp", CORNER_MARK, corners)?;
     if let Some(tags) = &data.point_tags {
-        property(out, "VProp", "tag", tags)?;
+        property(out, "VProp", "tag", tags.iter().copied())?;
     }
     if has_cell_tags(data) {
         let face_tags = data.tagged_faces().map(|(_, tag)| tag).chain(std::iter::repeat_n(0, n_other));
-        property(out, "FProp", "tag", &face_tags.collect::<Vec<_>>())?;
+        property(out, "FProp", "tag", face_tags)?;
         let hex_tags = (0..data.hexes.len()).map(|h| data.hex_tag(h)).chain(std::iter::repeat_n(0, n_small));
-        property(out, "CProp", "tag", &hex_tags.collect::<Vec<_>>())?;
+        property(out, "CProp", "tag", hex_tags)?;
     }
     write_data(out, data, n_other, n_small)
 }
@@ -511,16 +490,14 @@ fn reals(out: &mut dyn Write, kind: &str, name: &str, values: impl Iterator<Item
     Ok(())
 }
 
-fn write_list(out: &mut dyn Write, items: &[u64]) -> io::Result<()> {
+fn write_list(out: &mut dyn Write, items: &[u32]) -> io::Result<()> {
     write!(out, "{}", items.len())?;
-    for item in items {
-        write!(out, " {item}")?;
-    }
+    write_indices(out, items, 0)?;
     out.write_all(b"\n")
 }
 
-fn property(out: &mut dyn Write, kind: &str, name: &str, values: &[i64]) -> io::Result<()> {
-    let wide = values.iter().any(|&v| i32::try_from(v).is_err());
+fn property(out: &mut dyn Write, kind: &str, name: &str, values: impl Iterator<Item = i64> + Clone) -> io::Result<()> {
+    let wide = values.clone().any(|v| i32::try_from(v).is_err());
     writeln!(out, "{kind} {} \"{name}\"", if wide { "long" } else { "int" })?;
     for value in values {
         writeln!(out, "{value}")?;

@@ -131,7 +131,7 @@ impl<'a> Worker<'a> {
         let least_gain = best.as_ref().map_or(least_gain, |b| b.gain + 1);
         let mut is_blocked = false;
         let mut own: Option<Pairs> = None;
-        for &state in states {
+        for state in states {
             let gain = size - self.atlas.hexes_of(state) as i32;
             if gain < least_gain {
                 break;

@@ -1,0 +1,266 @@
+//! Flips: the tets round an inner edge, or the two at an inner face, are replaced if their worst one gets better.
+//!
+//! Rounded points that lie almost on a circle or in a plane make tets with hardly any volume (a Delaunay tetrahedralisation
+//! takes them as they come), and such tets bar every move of their corners. Removing an edge (Freitag and Ollivier-Gooch 1997)
+//! tries all triangulations of the ring of vertices round it, by dynamic programming (Klincsek 1980). No flip touches the boundary.
+
+use super::solid::{FLOOR_INSIDE, Solid};
+use crate::core::complex::{OUTWARD, TET_EDGES};
+use crate::ids::TetId;
+use hexfill_geometry::{Vector, cross, dot, midpoint, norm, sub};
+use hexfill_mesh::{Context, StopReason, VertexId};
+
+/// Tets of less quality are worked on.
+const GOOD: f64 = 0.15;
+
+/// Tets of less quality are worth a new point.
+const FLAT: f64 = 1e-4;
+
+/// Longest ring that is triangulated anew.
+const RING: usize = 10;
+
+/// Most passes over the bad tets.
+const PASSES: usize = 4;
+
+/// Tets to take out, and those that fill the same place.
+type Exchange = (Vec<TetId>, Vec<[VertexId; 4]>);
+
+impl Solid {
+    /// Flips and moves until no bad tet gets better that way.
+    pub(super) fn improve(&mut self, ctx: &Context<'_>) -> Result<(), StopReason> {
+        for _ in 0..PASSES {
+            let mut bad: Vec<(f64, TetId)> = Vec::new();
+            for (t, &tet) in self.tets.enumerate().filter(|(_, tet)| tet[0].is_some()) {
+                let q = self.quality(tet);
+                if q < GOOD {
+                    bad.push((q, t));
+                }
+            }
+            bad.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            let mut done = 0;
+            for (_, t) in bad {
+                if let Some(reason) = ctx.stop() {
+                    return Err(reason);
+                }
+                if self.tets[t][0].is_some() && self.improve_tet(t) {
+                    done += 1;
+                }
+            }
+            if done == 0 {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// The best flip of an edge or a face of a tet, else a move of one of its inner points.
+    fn improve_tet(&mut self, t: TetId) -> bool {
+        let tet = self.tets[t];
+        let mut best: Option<(f64, Exchange)> = None;
+        let edges = TET_EDGES.map(|[i, j]| self.without_edge(tet[i], tet[j]));
+        let faces = [0, 1, 2, 3].map(|i| self.without_face(t, i));
+        for (old, new) in edges.into_iter().chain(faces).flatten() {
+            let before = old.iter().map(|&u| self.quality(self.tets[u])).fold(f64::INFINITY, f64::min);
+            let after = new.iter().map(|&u| self.quality(u)).fold(f64::INFINITY, f64::min);
+            if after > before * 1.0001 && after > 0.0 && best.as_ref().is_none_or(|b| after > b.0) {
+                best = Some((after, (old, new)));
+            }
+        }
+        if let Some((_, (old, new))) = best {
+            self.replace(&old, &new);
+            return true;
+        }
+        let before = self.quality(tet);
+        if before > FLOOR_INSIDE {
+            return false;
+        }
+        for v in tet {
+            if v.index() >= self.n_surface && self.faces_at[v].is_empty() {
+                self.smooth(v);
+            }
+        }
+        self.quality(tet) > before * 1.01
+    }
+
+    /// Removes edges of three tets where the two that take their place are good enough: one tet less each.
+    pub(super) fn save_tets(&mut self) {
+        // Tets that come of this are looked at next time.
+        for t in self.tets.ids() {
+            let tet = self.tets[t];
+            if tet[0].is_none() {
+                continue;
+            }
+            for [i, j] in TET_EDGES {
+                let Some((old, new)) = self.without_edge(tet[i], tet[j]) else { continue };
+                if old.len() != 3 {
+                    continue;
+                }
+                let before = old.iter().map(|&u| self.quality(self.tets[u])).fold(f64::INFINITY, f64::min);
+                let after = new.iter().map(|&u| self.quality(u)).fold(f64::INFINITY, f64::min);
+                if after > 0.0 && after >= before.min(5.0 * FLOOR_INSIDE) {
+                    self.replace(&old, &new);
+                    break;
+                }
+            }
+        }
+    }
+
+    /// Last resort against flat tets: splits an inner edge of each and moves the new point to where they get volume.
+    pub(super) fn split_flat(&mut self, ctx: &Context<'_>) -> Result<(), StopReason> {
+        let is_flat = |solid: &Self, t: TetId| solid.tets[t][0].is_some() && solid.quality(solid.tets[t]) < FLAT;
+        let flat: Vec<TetId> = self.tets.ids().filter(|&t| is_flat(self, t)).collect();
+        let any = !flat.is_empty();
+        for t in flat {
+            if let Some(reason) = ctx.stop() {
+                return Err(reason);
+            }
+            // One split may have mended its neighbour.
+            if is_flat(self, t) {
+                self.split_edge_of(t);
+            }
+        }
+        if any { self.improve(ctx) } else { Ok(()) }
+    }
+
+    fn split_edge_of(&mut self, t: TetId) {
+        let tet = self.tets[t];
+        let v = self.points.next_id();
+        let mut best: Option<(f64, Vector, Exchange)> = None;
+        for [i, j] in TET_EDGES {
+            let (a, b) = (tet[i], tet[j]);
+            if self.faces_at[a].iter().any(|&f| self.faces[f].0.contains(&b)) {
+                continue;
+            }
+            let old: Vec<TetId> = self.tets_at[a].iter().copied().filter(|&u| self.tets[u].contains(&b)).collect();
+            let with = |end: VertexId| old.iter().map(move |&u| (u, end));
+            let new: Vec<[VertexId; 4]> =
+                with(a).chain(with(b)).map(|(u, end)| self.tets[u].map(|w| if w == end { v } else { w })).collect();
+            let (p, q) = (self.points[a], self.points[b]);
+            let middle = midpoint(p, q);
+            let [x, y, z] = [0, 1, 2].map(|k| self.points[tet[k + 1]]);
+            let normals = OUTWARD.map(|f| {
+                let [x, y, z] = f.map(|k| self.points[tet[k]]);
+                cross(sub(y, x), sub(z, x))
+            });
+            let reach = [sub(p, q), sub(x, y), sub(y, z)].map(|d| dot(d, d)).into_iter().fold(0.0, f64::max).sqrt();
+            let mut found = (0.0, middle, 0.0);
+            for normal in normals {
+                let length = norm(normal);
+                let mut step = reach;
+                for _ in 0..20 {
+                    let at = std::array::from_fn(|c| middle[c] - step * normal[c] / length);
+                    let here = self.least(&new, v, at);
+                    if here > found.0 {
+                        found = (here, at, step);
+                    }
+                    step /= 2.0;
+                }
+            }
+            if found.0 > 0.0 {
+                let at = self.climb(&new, v, found);
+                let here = self.least(&new, v, at);
+                if best.as_ref().is_none_or(|b| here > b.0) {
+                    best = Some((here, at, (old, new)));
+                }
+            }
+        }
+        let Some((worst, at, (old, new))) = best else { return };
+        if worst > 2.0 * self.quality(tet) {
+            self.points.push(at);
+            self.tets_at.push(Vec::new());
+            self.faces_at.push(Vec::new());
+            self.replace(&old, &new);
+        }
+    }
+
+    fn replace(&mut self, old: &[TetId], new: &[[VertexId; 4]]) {
+        for &t in old {
+            for v in std::mem::replace(&mut self.tets[t], [VertexId::NONE; 4]) {
+                self.tets_at[v].retain(|&u| u != t);
+            }
+        }
+        for &tet in new {
+            let t = self.tets.push(tet);
+            tet.iter().for_each(|&v| self.tets_at[v].push(t));
+        }
+    }
+
+    /// The tets round an inner edge, and the best ones that fill the same place without it.
+    fn without_edge(&self, a: VertexId, b: VertexId) -> Option<Exchange> {
+        let old: Vec<TetId> = self.tets_at[a].iter().copied().filter(|&t| self.tets[t].contains(&b)).collect();
+        if old.len() > RING || old.len() < 3 {
+            return None;
+        }
+        // The other two corners of each, so that a, b and they are positive.
+        let mut steps: Vec<[VertexId; 2]> = Vec::with_capacity(old.len());
+        for &t in &old {
+            let tet = self.tets[t];
+            let i = tet.iter().position(|&v| v == a)?;
+            let [x, y, z] = OUTWARD[i].map(|k| tet[k]);
+            steps.push(if x == b {
+                [y, z]
+            } else if y == b {
+                [z, x]
+            } else {
+                [x, y]
+            });
+        }
+        let mut ring = vec![steps[0][0]];
+        let mut here = steps[0][1];
+        while here != ring[0] {
+            ring.push(here);
+            // No next one: the edge is on the boundary.
+            here = steps.iter().find(|s| s[0] == here)?[1];
+            if ring.len() > old.len() {
+                return None;
+            }
+        }
+        let n = ring.len();
+        if n != old.len() {
+            return None;
+        }
+        let both = |i: usize, j: usize, k: usize| [[a, ring[i], ring[j], ring[k]], [b, ring[i], ring[k], ring[j]]];
+        // Entry i n + j: the ring from i to j closed by the edge i j, its worst tet and where the triangle at that edge ends.
+        let mut best = vec![(f64::INFINITY, 0); n * n];
+        for width in 2..n {
+            for i in 0..n - width {
+                let j = i + width;
+                let mut found = (f64::NEG_INFINITY, 0);
+                for k in i + 1..j {
+                    let [p, q] = both(i, k, j).map(|t| self.quality(t));
+                    let worst = p.min(q).min(best[i * n + k].0).min(best[k * n + j].0);
+                    if worst > found.0 {
+                        found = (worst, k);
+                    }
+                }
+                best[i * n + j] = found;
+            }
+        }
+        if best[n - 1].0 <= 0.0 {
+            return None;
+        }
+        let mut new = Vec::with_capacity(2 * n - 4);
+        let mut stack = vec![(0, n - 1)];
+        while let Some((i, j)) = stack.pop() {
+            if j - i >= 2 {
+                let k = best[i * n + j].1;
+                new.extend(both(i, k, j));
+                stack.extend([(i, k), (k, j)]);
+            }
+        }
+        Some((old, new))
+    }
+
+    /// The two tets at an inner face, and the three round the edge between their far corners.
+    fn without_face(&self, t: TetId, i: usize) -> Option<Exchange> {
+        let tet = self.tets[t];
+        let [x, y, z] = OUTWARD[i].map(|k| tet[k]);
+        let beside = self.tets_at[x].iter().copied().find(|&u| {
+            let other = self.tets[u];
+            u != t && other.contains(&y) && other.contains(&z)
+        })?;
+        let p = tet[i];
+        let q = self.tets[beside].into_iter().find(|v| ![x, y, z].contains(v))?;
+        Some((vec![t, beside], vec![[p, x, y, q], [p, y, z, q], [p, z, x, q]]))
+    }
+}

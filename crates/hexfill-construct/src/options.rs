@@ -1,0 +1,56 @@
+//! What a caller may choose.
+
+use crate::cells::library::{CellChoice, CellLibrary};
+use crate::core::cone::BallCore;
+use crate::core::maker::InteriorTets;
+use std::sync::Arc;
+
+/// Which colouring to use.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum RouteChoice {
+    /// The bipartition if there is one, else few black-black edges.
+    #[default]
+    Auto,
+    /// Black all over: Erickson's construction, for comparison.
+    Erickson,
+}
+
+/// Choices for [`construct`](crate::construct).
+///
+/// | field | default |
+/// |---|---|
+/// | `route` | the bipartition if there is one, else few black-black edges |
+/// | `ball_core` | a new vertex inside if there are positions, else as few tetrahedra as possible |
+/// | `tets` | none: built-in tetrahedra |
+/// | `cells` | those with the fewest hexes |
+/// | `variant` | 0 |
+/// | `library` | none: the built-in cells that `cells` names |
+#[derive(Clone, Debug, Default)]
+pub struct ConstructOptions {
+    /// Which colouring.
+    pub route: RouteChoice,
+    /// How the core of a ball is made.
+    pub ball_core: BallCore,
+    /// Who makes the tetrahedra of the interior; without it a ball is coned, and anything else is cut along disks
+    /// that positions tell (see [`crate::HandlebodyTets`]).
+    pub tets: Option<Arc<dyn InteriorTets>>,
+    /// Which of the built-in cells.
+    pub cells: CellChoice,
+    /// Which of the choices that cost the same: an odd number exchanges the colours of a bipartite surface, half of it
+    /// orders the matching. 0 is the usual one; another may suit a surface with sharp vertices better.
+    pub variant: u64,
+    /// Cells to use instead of the built-in ones.
+    pub library: Option<CellLibrary>,
+}
+
+impl ConstructOptions {
+    /// Whether the variant exchanges the colours of a bipartite surface.
+    pub(crate) fn swaps_colours(&self) -> bool {
+        self.variant % 2 == 1
+    }
+
+    /// Which matching the variant wants.
+    pub(crate) fn matching(&self) -> u64 {
+        self.variant / 2
+    }
+}

@@ -1,0 +1,144 @@
+//! Colours: the bipartition where there is one, else a colouring with few black-black edges (Erickson 2014, section 3, colours all
+//! vertices black; Verhetsel et al. 2019 use the bipartition).
+//!
+//! Invariant of every [`Colouring`]: white vertices are independent. Columns over white vertices have two segments,
+//! and the dual surface Sigma crosses exactly the black-black edges, so a bipartite surface pays nothing for it and
+//! Erickson's original construction is the colouring that is black all over.
+
+use hexfill_mesh::{Dart, QuadSurface, VertexId, bipartition};
+
+/// White vertices, no two of them adjacent.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Colouring {
+    /// Per vertex id: whether it is white.
+    pub white: Vec<bool>,
+    /// Number of black-black edges.
+    pub n_cut_edges: usize,
+}
+
+/// Per vertex: whether its depth in a breadth-first forest is odd (roots ascending).
+fn depth_parity(surface: &QuadSurface) -> Vec<bool> {
+    let first = surface.dart_of_vertices();
+    let mut odd = vec![false; surface.n_vertices()];
+    let mut seen = vec![false; surface.n_vertices()];
+    let mut queue = Vec::new();
+    for start in 0..surface.n_vertices() {
+        if first[start].is_none() || seen[start] {
+            continue;
+        }
+        seen[start] = true;
+        queue.clear();
+        queue.push(start);
+        let mut at = 0;
+        while at < queue.len() {
+            let v = queue[at];
+            at += 1;
+            let Some(d) = first[v] else { continue };
+            for e in surface.round_vertex(d) {
+                let w = surface.target(e).index();
+                if !seen[w] {
+                    seen[w] = true;
+                    odd[w] = !odd[v];
+                    queue.push(w);
+                }
+            }
+        }
+    }
+    odd
+}
+
+/// How many hexes of the core a white class saves on a ball: its vertices with three quads.
+fn n_degree_three(surface: &QuadSurface, class: &[bool], side: bool) -> usize {
+    (0..class.len()).filter(|&v| class[v] == side && surface.degree(VertexId::new(v)) == 3).count()
+}
+
+/// A colouring with few black-black edges: none if the surface is bipartite. Linear time. `swap` exchanges the colours of a
+/// bipartite surface.
+pub fn colouring(surface: &QuadSurface, swap: bool) -> Colouring {
+    if let Ok(odd) = bipartition(surface) {
+        // The class with more vertices of three quads becomes white (the core is cheaper there).
+        let side = swap != (n_degree_three(surface, &odd, true) >= n_degree_three(surface, &odd, false));
+        let white = odd.iter().enumerate().map(|(v, &o)| surface.degree(VertexId::new(v)) > 0 && o == side).collect();
+        return Colouring { white, n_cut_edges: 0 };
+    }
+    let mut white = depth_parity(surface);
+    let first = surface.dart_of_vertices();
+    let whites_round = |white: &[bool], v: usize| {
+        first[v].map_or(0, |d| surface.round_vertex(d).filter(|&e| white[surface.target(e).index()]).count())
+    };
+    // A vertex moves to the other colour when that removes one-coloured edges; a few sweeps settle it.
+    for _ in 0..8 {
+        let mut moved = false;
+        for v in 0..white.len() {
+            let degree = surface.degree(VertexId::new(v)) as usize;
+            let same = whites_round(&white, v);
+            let same = if white[v] { same } else { degree - same };
+            if 2 * same > degree {
+                white[v] = !white[v];
+                moved = true;
+            }
+        }
+        if !moved {
+            break;
+        }
+    }
+    // White must be independent: of two adjacent whites the one with more white neighbours turns black.
+    for v in 0..white.len() {
+        if white[v] {
+            let mine = whites_round(&white, v);
+            let worst = first[v].is_some_and(|d| {
+                surface.round_vertex(d).any(|e| {
+                    let w = surface.target(e).index();
+                    white[w] && whites_round(&white, w) <= mine
+                })
+            });
+            if mine > 0 && worst {
+                white[v] = false;
+            }
+        }
+    }
+    for v in 0..white.len() {
+        if white[v] && whites_round(&white, v) > 0 {
+            white[v] = false;
+        }
+    }
+    for v in 0..white.len() {
+        if !white[v] && first[v].is_some() && whites_round(&white, v) == 0 {
+            white[v] = true;
+        }
+    }
+    with_count(surface, white)
+}
+
+/// Erickson's colouring: black all over, every edge cut.
+pub fn all_black(surface: &QuadSurface) -> Colouring {
+    with_count(surface, vec![false; surface.n_vertices()])
+}
+
+fn with_count(surface: &QuadSurface, white: Vec<bool>) -> Colouring {
+    let cut = |d: &Dart| !white[surface.origin(*d).index()] && !white[surface.target(*d).index()];
+    let n_cut_edges = surface.darts().filter(cut).count() / 2;
+    Colouring { white, n_cut_edges }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hexfill_mesh::generate::torus;
+
+    #[test]
+    fn white_is_independent_and_only_odd_tori_have_cut_edges() {
+        for m in 3..7u32 {
+            for n in 3..7u32 {
+                let s = torus(m, n, 0).unwrap();
+                let c = colouring(&s, false);
+                for d in s.darts() {
+                    assert!(!(c.white[s.origin(d).index()] && c.white[s.target(d).index()]));
+                }
+                assert_eq!(c.n_cut_edges == 0, m % 2 == 0 && n % 2 == 0);
+                assert!(c.n_cut_edges < s.n_edges());
+                assert_eq!(all_black(&s).n_cut_edges, s.n_edges());
+            }
+        }
+    }
+}

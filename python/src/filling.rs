@@ -1,0 +1,231 @@
+//! Verbs that make meshes: fill, embed, simplify. Each returns the mesh, a report as JSON, and whether Ctrl-C ended it.
+
+use crate::choices::choice;
+use crate::data::Data;
+use crate::failure::Failure;
+use crate::work::{Run, limit, run, stop_word};
+use hexfill::check::{Judged, cell_quality};
+use hexfill::construct::CellChoice;
+use hexfill::embed::{Objective, Options};
+use hexfill::io::MeshData;
+use hexfill::{
+    BoundaryLayers, Collapse, Context, FillOptions, FillReport, PlaceOptions, Placed, Prefer, Problem, SimplifyOptions,
+    Strategy,
+};
+use pyo3::prelude::*;
+use serde_json::{Value, json};
+use std::sync::Arc;
+
+/// A mesh, its report, and whether Ctrl-C ended the work.
+type Made = (Data, String, bool);
+
+/// Options of [`fill`]: a dictionary.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Filling {
+    strategy: String,
+    prefer: String,
+    layers: Option<u32>,
+    layer_height: Option<f64>,
+    growth: f64,
+    max_hexes: Option<u32>,
+    best_of: usize,
+    embed: bool,
+    embed_limit: Option<f64>,
+    simplify: bool,
+}
+
+impl Filling {
+    fn options(&self, has_limit: bool) -> Result<FillOptions, Failure> {
+        let strategies = [
+            ("auto", Strategy::Auto),
+            ("shell", Strategy::Shell),
+            ("atlas", Strategy::Atlas),
+            ("construct", Strategy::Construct),
+        ];
+        let preferences = [("balance", Prefer::Balance), ("hexes", Prefer::Hexes), ("quality", Prefer::Quality)];
+        // As on the command line: what is not embedded is made as small as the time allows.
+        let simplify = self.simplify || !self.embed && has_limit;
+        let balls = if has_limit { u64::MAX } else { SIMPLIFY_BALLS };
+        let (height, growth) = (self.layer_height, self.growth);
+        Ok(FillOptions {
+            strategy: choice("strategy", &self.strategy, &strategies)?,
+            prefer: choice("prefer", &self.prefer, &preferences)?,
+            max_hexes: self.max_hexes.unwrap_or(u32::MAX),
+            count: self.best_of,
+            cells: if self.embed { CellChoice::Embeddable } else { CellChoice::Fewest },
+            simplify: simplify.then(|| SimplifyOptions::default().with_balls(balls)),
+            layers: self.layers.map(|count| BoundaryLayers { count, height, growth }),
+            ..FillOptions::default()
+        })
+    }
+
+    fn placing(&self) -> PlaceOptions {
+        let mut how = PlaceOptions::default();
+        how.embed = self.embed.then(Options::default);
+        how.best = self.best_of > 1;
+        how.limit = limit(self.embed_limit);
+        how
+    }
+}
+
+/// Balls that `simplify` tries without a time limit.
+const SIMPLIFY_BALLS: u64 = 200_000;
+
+/// Fills a surface.
+///
+/// # Errors
+/// `SurfaceError`, `NoMeshExists`, `NoMeshFound`, `InputError`.
+#[pyfunction]
+pub(crate) fn fill(
+    py: Python<'_>,
+    surface: &Data,
+    name: String,
+    options: Filling,
+    time_limit: Option<f64>,
+    how: Run,
+) -> PyResult<Made> {
+    let surface = Arc::clone(&surface.0);
+    let options_of_fill = options.options(time_limit.is_some()).map_err(|failure| failure.raise(py))?;
+    let ((data, report), interrupted) =
+        run(py, how, move |ctx| filled(&surface, &name, &options, &options_of_fill, ctx))?;
+    Ok((data.into(), report, interrupted))
+}
+
+fn filled(
+    surface: &MeshData,
+    name: &str,
+    options: &Filling,
+    fill: &FillOptions,
+    ctx: &Context<'_>,
+) -> Result<(MeshData, String), Failure> {
+    let problem = Problem::from_data(name, surface)?;
+    let made = hexfill::fill_placed(&problem, fill, &options.placing(), ctx)?;
+    let stopped = stop_word(made.stop);
+    let Some((filled, placed)) = made.meshes.first() else {
+        let tried = made.tried.join("; ");
+        let message = format!(
+            "no mesh was found within the bounds ({stopped}), which does not mean that none exists; tried: {tried}"
+        );
+        return Err(Failure::not_found(message, stopped));
+    };
+    let mut data = hexfill::mesh_data(&problem, &filled.mesh, placed.as_ref().map(|p| p.points.clone()));
+    if let Some(placed) = placed.as_ref().filter(|_| options.embed) {
+        placed.flag(&mut data);
+    }
+    let mut report = json!(FillReport::new(&problem, filled, &made.tried));
+    report["geometry"] = json!(placed.as_ref().map(Placed::report));
+    report["stopped"] = json!(stopped);
+    report["choice"] = json!(made.choice);
+    report["notes"] = json!(problem.notes);
+    Ok((data, report.to_string()))
+}
+
+/// The hexes of file data, or why there are none to work on.
+fn need_hexes(data: &MeshData) -> Result<(), Failure> {
+    if data.hexes.is_empty() {
+        return Err(Failure::input("there are no hexes; give a hex mesh (hexfill.fill makes one from a surface)"));
+    }
+    Ok(())
+}
+
+/// Moves the interior vertices of a mesh.
+///
+/// # Errors
+/// `MeshError`, `InputError`.
+#[pyfunction]
+pub(crate) fn embed(
+    py: Python<'_>,
+    mesh: &Data,
+    objective: &str,
+    starts: u32,
+    fresh: bool,
+    symmetric: bool,
+    how: Run,
+) -> PyResult<Made> {
+    let objectives =
+        [("sj", Objective::ScaledJacobian), ("balanced", Objective::Balanced), ("untangle", Objective::UntangleOnly)];
+    let mut options = Options::new(choice("objective", objective, &objectives).map_err(|failure| failure.raise(py))?);
+    (options.starts, options.symmetric) = (starts, symmetric);
+    let data = Arc::clone(&mesh.0);
+    let ((data, report), interrupted) = run(py, how, move |ctx| embedded(&data, fresh, &options, ctx))?;
+    Ok((data.into(), report, interrupted))
+}
+
+fn embedded(data: &MeshData, fresh: bool, options: &Options, ctx: &Context<'_>) -> Result<(MeshData, String), Failure> {
+    need_hexes(data)?;
+    if !data.has_coordinates {
+        return Err(Failure::input(
+            "the mesh has no coordinates; hexfill.fill places the boundary of a surface without any",
+        ));
+    }
+    let mesh = data.hex_mesh()?;
+    let start = (!fresh).then_some(data.points.as_slice());
+    let made = hexfill::embed::embed(&mesh, &data.points, start, options, ctx)?;
+    let cells = cell_quality(&Judged::connectivity(mesh.n_vertices(), &data.hexes).with_points(&made.points));
+    let cells = cells.into_iter().flatten().collect();
+    let stopped = stop_word(made.report.stop);
+    let placed = Placed { points: made.points, cells, embedding: Some(made.report), refused: None, ways: 1 };
+    let mut out = data.clone();
+    placed.flag(&mut out);
+    out.points.clone_from(&placed.points);
+    let report: Value = json!({ "geometry": placed.report(), "stopped": stopped });
+    Ok((out, report.to_string()))
+}
+
+/// Makes a mesh smaller.
+///
+/// # Errors
+/// `MeshError`, `InputError`.
+#[pyfunction]
+pub(crate) fn simplify(
+    py: Python<'_>,
+    mesh: &Data,
+    balls: Option<u64>,
+    collapse_only: Option<&str>,
+    heat: Option<u32>,
+    time_limit: Option<f64>,
+    how: Run,
+) -> PyResult<Made> {
+    let collapse = collapse_only
+        .map(|which| choice("collapse_only", which, &[("all", Collapse::All), ("inside", Collapse::Inside)]));
+    let collapse = collapse.transpose().map_err(|failure| failure.raise(py))?;
+    let balls = match (balls, time_limit) {
+        _ if collapse.is_some() => 0,
+        (Some(balls), _) => balls,
+        (None, Some(_)) => u64::MAX,
+        (None, None) => hexfill::default_balls(mesh.0.hexes.len()),
+    };
+    let mut options = SimplifyOptions::default().with_balls(balls).with_collapse(collapse.unwrap_or_default());
+    if let Some(heat) = heat {
+        options = options.with_heat(heat);
+    }
+    let data = Arc::clone(&mesh.0);
+    let ((data, report), interrupted) = run(py, how, move |ctx| simplified(&data, &options, ctx))?;
+    Ok((data.into(), report, interrupted))
+}
+
+fn simplified(data: &MeshData, options: &SimplifyOptions, ctx: &Context<'_>) -> Result<(MeshData, String), Failure> {
+    need_hexes(data)?;
+    let others = data.cell_count() - data.hexes.len();
+    if others > 0 {
+        return Err(Failure::input(format!(
+            "there are {others} cells that are no hexes; only pure hex meshes can be simplified"
+        )));
+    }
+    let made = hexfill::simplify(data, options, None, ctx)?;
+    let r = &made.report;
+    let report = json!({
+        "hexes_before": r.before,
+        "hexes": r.after,
+        "sheets": r.sheets,
+        "columns": r.columns,
+        "collapsed_hexes": r.collapsed,
+        "balls": r.balls,
+        "looked_up": r.looked_up,
+        "exchanges": r.exchanges,
+        "stopped": stop_word(r.stop),
+        "notes": made.data.notes,
+    });
+    Ok((made.data, report.to_string()))
+}
