@@ -74,6 +74,7 @@ fn main() {
         ("L1-L2", base.up_to(Level::L2)),
         ("L1-L3", base.up_to(Level::L3)),
         ("L1-L5", base),
+        ("L1-L5, quality", base.quality(true)),
         ("L1-L5, Betti", base.betti(true)),
         ("L1-L5, Betti, quality", base.betti(true).quality(true)),
     ] {

@@ -4,7 +4,7 @@ use hexfill_construct::{
     BallCore, CellChoice, CellLibrary, ConstructOptions, RouteChoice, colouring, construct, core_triangles, light_sides,
 };
 use hexfill_mesh::generate::octagonal_spindle;
-use hexfill_mesh::{Context, QuadId, parse_surface_signature};
+use hexfill_mesh::{Context, QuadId, VertexId, parse_surface_signature};
 
 fn main() {
     let surface = match std::env::args().nth(1).map(|s| parse_surface_signature(&s)) {
@@ -15,7 +15,7 @@ fn main() {
     let ctx = Context::default();
     println!("surface: {} quads, {} vertices, genus {}", surface.n_quads(), surface.n_used_vertices(), surface.genus());
     let colours = colouring(&surface, false);
-    let white: Vec<usize> = (0..surface.n_vertices()).filter(|&v| colours.white[v]).collect();
+    let white: Vec<VertexId> = colours.white.enumerate().filter(|(_, white)| **white).map(|(v, _)| v).collect();
     println!("1 plan: colours: white {white:?}, {} cut edges", colours.n_cut_edges);
     for q in 0..surface.n_quads() {
         println!("  q{q}: {:?}", surface.quad(QuadId::new(q)));
@@ -26,7 +26,7 @@ fn main() {
         Ok(sides) => {
             let pairs: Vec<(u32, u32)> = surface
                 .darts()
-                .filter(|&d| d < surface.twin(d) && sides.light[d.index()])
+                .filter(|&d| d < surface.twin(d) && sides.light[d])
                 .map(|d| (d.quad().0, surface.twin(d).quad().0))
                 .collect();
             println!("3 layer: light sides between quads {pairs:?}");

@@ -40,6 +40,12 @@ const LARGE: usize = 2000;
 /// They are raised to this share of their upper bound: the last digits of a bound take most of the time.
 const ENOUGH: f64 = 0.995;
 
+/// Where only valid cells are asked for, large meshes are raised to this share of their upper bound, which takes few cells.
+const BARELY: f64 = 0.05;
+
+/// Nothing is gained so near the upper bound.
+const NEAR_OPTIMUM: f64 = 1e-8;
+
 /// A balanced result keeps this share of the optimum.
 const BALANCED_SHARE: f64 = 0.95;
 
@@ -125,7 +131,8 @@ struct Normal {
 
 impl Normal {
     /// [`run`](Self::run), for a small mesh also from its best symmetric positions, if it has any: a flat optimum, which linear
-    /// programs approach slowly in all variables, is near in a quarter of them.
+    /// programs approach slowly in all variables, is near in a quarter of them. They come first: where they lead to the upper
+    /// bound nothing else is tried.
     fn run_also_from_symmetric(
         &mut self,
         mesh: &HexMesh,
@@ -133,35 +140,35 @@ impl Normal {
         options: &Options,
         context: &Context<'_>,
     ) -> Embedding {
-        let made = self.run(mesh, start, options, context);
-        let report = &made.report;
         let may_help = start.is_none()
             && !options.symmetric
             && options.objective == Objective::ScaledJacobian
-            && mesh.n_hexes() <= SMALL
-            && report.upper_bound > 1e-9
-            && report.scaled_jacobian < report.upper_bound - 1e-8
-            && context.stop().is_none();
-        if may_help {
-            self.problem.symmetry = symmetry::find(mesh, &self.problem, &self.points);
+            && mesh.n_hexes() <= SMALL;
+        let symmetric = if may_help { self.run_from_symmetric(mesh, options, context) } else { None };
+        let value = |e: &Embedding| {
+            if e.report.valid_in_floating_point { e.report.scaled_jacobian } else { f64::NEG_INFINITY }
+        };
+        if let Some(made) = symmetric.as_ref().filter(|e| value(e) >= e.report.upper_bound - NEAR_OPTIMUM) {
+            return made.clone();
         }
-        if !may_help || self.problem.symmetry.is_none() {
-            return made;
-        }
-        let one = Options { starts: 1, ..*options };
-        let symmetric = self.run(mesh, None, &one, context);
-        self.problem.symmetry = None;
-        if !symmetric.report.valid_in_floating_point {
-            return made;
-        }
-        let mut better = self.run(mesh, Some(&symmetric.points), &one, context);
-        if made.report.valid_in_floating_point && made.report.scaled_jacobian >= better.report.scaled_jacobian {
-            return made;
-        }
+        let made = self.run(mesh, start, options, context);
+        let Some(mut better) = symmetric.filter(|e| value(e) > value(&made)) else { return made };
         better.report.best_start = made.report.starts;
         better.report.starts = made.report.starts + 1;
         better.report.valid_starts = made.report.valid_starts + 1;
         better
+    }
+
+    /// The positions found from symmetric ones, in all variables again; `None` if there are no valid symmetric ones.
+    fn run_from_symmetric(&mut self, mesh: &HexMesh, options: &Options, context: &Context<'_>) -> Option<Embedding> {
+        self.problem.symmetry = symmetry::find(mesh, &self.problem, &self.points);
+        self.problem.symmetry.as_ref()?;
+        let one = Options { starts: 1, ..*options };
+        let symmetric = self.run(mesh, None, &one, context);
+        self.problem.symmetry = None;
+        let report = &symmetric.report;
+        (report.valid_in_floating_point && report.upper_bound > 1e-9)
+            .then(|| self.run(mesh, Some(&symmetric.points), &one, context))
     }
 
     fn new(mesh: &HexMesh, boundary_points: &[Vector], start: Option<&[Vector]>) -> Result<Self, EmbedError> {
@@ -425,7 +432,7 @@ impl Search<'_> {
     }
 
     fn is_optimal(&self, value: f64) -> bool {
-        value >= self.upper_bound - 1e-8
+        value >= self.upper_bound - NEAR_OPTIMUM
     }
 
     /// Works out one start.
@@ -479,6 +486,9 @@ impl Search<'_> {
         if climbs && stopped.is_none() {
             stopped = self.improve(&mut points, target, context);
             bad = bad_cells(problem, &points);
+        }
+        if bad.is_empty() && stopped.is_none() && !climbs && n_hexes > LARGE && problem.symmetry.is_none() {
+            stopped = local::lift_barely_valid(problem, &mut points, BARELY * target, context);
         }
         let value = maxmin::judge_near_worst(problem, &points, 0.0, 0.0).worst;
         Candidate { number, points, untangled, n_bad: bad.len(), value, stopped }

@@ -64,11 +64,11 @@ pub(crate) fn lift(
     // In units of the worst value.
     let mut reach = 1.0;
     let mut rings = 1;
+    let mut worst = judge_near_worst(problem, points, 0.0, 0.0).worst;
     for pass in 0..PASSES {
         if let Some(reason) = context.stop() {
             return Some(reason);
         }
-        let worst = judge_near_worst(problem, points, 0.0, 0.0).worst;
         if worst <= 0.0 || worst >= target {
             return None;
         }
@@ -99,8 +99,10 @@ pub(crate) fn lift(
                 part.write_back(&better, points);
             }
         }
-        let gain = judge_near_worst(problem, points, 0.0, 0.0).worst - worst;
-        if gain < 0.2 * (tau - worst) {
+        let after = judge_near_worst(problem, points, 0.0, 0.0).worst;
+        let (gain, asked) = (after - worst, tau - worst);
+        worst = after;
+        if gain < 0.2 * asked {
             if rings < 2 && 3 * size < n_hexes {
                 rings += 1;
                 continue;
@@ -110,7 +112,7 @@ pub(crate) fn lift(
             }
             rings = 1;
             reach *= 0.5;
-        } else if gain > 0.8 * (tau - worst) {
+        } else if gain > 0.8 * asked {
             reach = (1.5 * reach).min(1.0);
         }
     }

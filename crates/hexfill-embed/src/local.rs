@@ -171,6 +171,18 @@ pub(crate) fn raise_large(
     None
 }
 
+/// Raises the cells below a low target only: those that untangling left barely valid.
+pub(crate) fn lift_barely_valid(
+    problem: &Problem,
+    points: &mut [Vector],
+    target: f64,
+    context: &Context<'_>,
+) -> Option<StopReason> {
+    let floors = Floors::new(problem, points);
+    let mut visits = problem.hexes.len();
+    lift::lift(problem, &Incidence::new(problem), points, &floors, target, &mut visits, context)
+}
+
 /// Raises the worst cells patch by patch, for meshes too large for one program. All cells must be valid.
 pub(crate) fn climb_worst(
     problem: &Problem,

@@ -76,9 +76,18 @@ pub(crate) struct Cells {
 
 /// Judges all cells at `points`; cells better than `cutoff` only as far as to know that.
 pub(crate) fn judge(problem: &Problem, points: &[Vector], cutoff: f64) -> Cells {
+    judge_within(problem, points, cutoff, COARSE)
+}
+
+/// How closely cells are judged on the way,
+const COARSE: (f64, usize) = (1e-6, 200);
+/// and once the target seems to be reached: the largest error, and the boxes this may take.
+const FINE: (f64, usize) = (1e-10, 2000);
+
+fn judge_within(problem: &Problem, points: &[Vector], cutoff: f64, (error, boxes): (f64, usize)) -> Cells {
     let mut each = vec![(0.0, Vec::new()); problem.hexes.len()];
     problem.map_hexes(&mut each, |h| {
-        let worst = Frame::new(&problem.corners_of(h, points)).worst(cutoff, 1e-6, 200);
+        let worst = Frame::new(&problem.corners_of(h, points)).worst(cutoff, error, boxes);
         (if worst.lower > 0.0 { worst.upper } else { worst.upper.min(-1e-12) }, worst.inner)
     });
     let worst = each.iter().map(|c| c.0).fold(f64::INFINITY, f64::min);
@@ -138,7 +147,18 @@ pub(crate) fn climb(
     let mut iterations = 0;
     let mut stopped = None;
     let mut rejected = 0;
-    while iterations < limits.iterations && value < target && radius > 1e-9 && problem.n_variables() > 0 {
+    let mut closely = COARSE;
+    while iterations < limits.iterations && radius > 1e-9 && problem.n_variables() > 0 {
+        if value >= target {
+            if closely == FINE || !matches!(goal, Goal::ScaledJacobian { .. }) {
+                break;
+            }
+            // The error on the way may be larger than what is left.
+            closely = FINE;
+            cells = judge_within(problem, points, value + SEEN, closely);
+            value = cells.worst;
+            continue;
+        }
         stopped = context.stop();
         if stopped.is_some() {
             break;
@@ -165,7 +185,7 @@ pub(crate) fn climb(
         x.iter_mut().zip(&step.direction).for_each(|(x, d)| *x += d);
         problem.scatter(&x, &mut trial);
         let trial_cells = match goal {
-            Goal::ScaledJacobian { .. } => judge(problem, &trial, value + step.promised + SEEN),
+            Goal::ScaledJacobian { .. } => judge_within(problem, &trial, value + step.promised + SEEN, closely),
             Goal::Condition { floor } => judge(problem, &trial, floor + SEEN),
         };
         let reached = merit(problem, &trial, &trial_cells, goal);

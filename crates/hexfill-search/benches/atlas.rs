@@ -39,6 +39,14 @@ fn atlas(c: &mut Criterion) {
     group.bench_function("fill the spindle from the embedded atlas", |b| {
         b.iter(|| fill_from_atlas(&surface, Atlas::embedded(), &FillOptions::default(), &Context::default()));
     });
+    group.bench_function("read the embedded atlas", |b| {
+        b.iter(|| Atlas::read_packed(include_bytes!("../data/default.hxatlas")));
+    });
+    // More fillings than the atlas has: inward flips look for the others.
+    let many = FillOptions { count: 1000, max_hexes: 60, max_cavities: 30_000, ..FillOptions::default() };
+    group.bench_function("30,000 cavities of inward flips", |b| {
+        b.iter(|| fill_from_atlas(&surface, Atlas::embedded(), &many, &Context::default()));
+    });
     group.finish();
 }
 

@@ -4,7 +4,7 @@ use crate::describe::describe_surface;
 use crate::limits::LimitsInfo;
 use crate::problem::Problem;
 use hexfill_doctor::{Finding, Findings, MendOptions, Severity, Soup, crossings, examine, mend};
-use hexfill_io::{MeshData, OtherFace};
+use hexfill_io::{MeshData, OtherFace, closing_tolerance, weld};
 use hexfill_mesh::QuadId;
 use serde::Serialize;
 
@@ -37,6 +37,12 @@ pub struct Existence {
 /// Looks at everything a file says of a surface. Never fails: what cannot be filled is what it is for.
 pub fn doctor(name: &str, data: &MeshData) -> Diagnosis {
     let mut findings = examine(&soup(data));
+    if let Some(open) = findings.findings.iter_mut().find(|f| f.kind == "open-edges") {
+        open.remedy = match closing_tolerance(data) {
+            Some(tolerance) => format!("--weld {tolerance} closes it"),
+            None => "no welding closes it: close the holes".to_owned(),
+        };
+    }
     let (mut notes, mut existence, mut limits) = (data.notes.clone(), None, None);
     if let Ok(problem) = Problem::from_data(name, data) {
         notes.clone_from(&problem.notes);
@@ -84,18 +90,37 @@ impl CureOptions {
 /// A surface after the smallest changes.
 #[derive(Clone, Debug)]
 pub struct Cure {
-    /// The surface. Points keep their ids, new ones follow; faces keep the tags and data of the faces they come from.
+    /// The surface. Points keep their order (their ids, if none were merged), new ones follow; faces keep the tags and data of the faces they come from.
     pub data: MeshData,
     /// What was done, in words.
     pub done: Vec<String>,
 }
 
-/// Mends what has one smallest remedy: flat and repeated faces go, triangles are merged in pairs, an odd number of quads becomes even, quads are turned to
+/// Seams are welded unasked where they are at most so wide, relative to the size of the surface: rounding of an exporter.
+const SEAM: f64 = 1e-6;
+
+/// Welds what only rounding keeps open, and says so.
+fn weld_seams(data: &mut MeshData) -> Option<String> {
+    let tolerance = closing_tolerance(data)?;
+    let extent = |k: usize| {
+        let all = || data.points.iter().map(|p| p[k]);
+        all().fold(f64::MIN, f64::max) - all().fold(f64::MAX, f64::min)
+    };
+    let size = (0..3).map(extent).fold(0.0, f64::max);
+    let mut welded = data.clone();
+    let weld = (tolerance <= SEAM * size).then(|| weld(&mut welded, tolerance)).filter(|w| w.collapsed == 0)?;
+    *data = welded;
+    Some(format!("{} points merged with others at most {tolerance} apart", weld.merged))
+}
+
+/// Mends what has one smallest remedy: seams are welded that only rounding keeps open, flat and repeated faces go, triangles are merged in pairs, an odd number of quads becomes even, quads are turned to
 /// agree and to face outward.
 pub fn cure(name: &str, data: &MeshData, options: &CureOptions) -> Cure {
-    let mended = mend(&soup(data), &MendOptions { refine: options.refine });
-    let mut done = mended.done;
-    let mut cured = with_faces(data, &mended.soup, &mended.origin);
+    let mut data = data.clone();
+    let mut done: Vec<String> = weld_seams(&mut data).into_iter().collect();
+    let mended = mend(&soup(&data), &MendOptions { refine: options.refine });
+    done.extend(mended.done);
+    let mut cured = with_faces(&data, &mended.soup, &mended.origin);
     if let Ok(problem) = Problem::from_data(name, &cured) {
         let quads: Vec<[u32; 4]> = problem.surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
         let turned = quads.iter().zip(&cured.quads).filter(|(a, b)| a != b).count();

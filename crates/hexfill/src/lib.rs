@@ -26,6 +26,7 @@ mod no_room;
 mod placed_fill;
 mod placement;
 mod problem;
+mod regions;
 mod simplify;
 mod stored;
 mod threads;
@@ -45,6 +46,7 @@ pub use hexfill_shell::{BoundaryLayers, ShellOptions};
 pub use limits::{LimitsInfo, Named};
 pub use placed_fill::{PlaceOptions, PlacedFill, fill_placed};
 pub use problem::{Problem, ProblemError, is_named};
+pub use regions::{FilledRegions, Region, RegionsError, fill_regions, regions};
 pub use simplify::{SimplifiedData, SimplifyError, default_balls, simplify};
 pub use threads::{MAX_THREADS, ThreadsError, with_threads};
 pub use {

@@ -28,6 +28,9 @@ pub(crate) struct Frame {
     pub(crate) e: [[Vector; 4]; 3],
 }
 
+/// A length per edge vector, in the order of [`Frame::e`].
+pub(crate) type Lengths = [[f64; 4]; 3];
+
 #[inline]
 fn minus(a: Vector, b: Vector) -> Vector {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
@@ -79,6 +82,12 @@ impl Frame {
     pub(crate) fn new(p: &[Vector; 8]) -> Self {
         let e = EDGE_CORNERS.map(|axis| axis.map(|[from, to]| minus(p[to], p[from])));
         Self { e }
+    }
+
+    /// The lengths of the edge vectors.
+    #[inline]
+    pub(crate) fn lengths(&self) -> Lengths {
+        self.e.map(|axis| axis.map(norm))
     }
 
     /// Largest component in absolute value, per direction.
@@ -157,27 +166,6 @@ impl Frame {
         b
     }
 
-    /// Upper bounds `N_ijk` of |J1| |J2| |J3|: the same means of products of norms, so that `B >= t N` for all 27 gives a
-    /// scaled Jacobian of at least t. `slack` is added to each norm for the rounding of the edge vectors.
-    pub(crate) fn norm_products(&self, slack: f64) -> [f64; 27] {
-        let n = self.e.map(|axis| axis.map(|v| norm(v) * (1.0 + 8.0 * UNIT) + slack));
-        let mut sums = [0.0; 27];
-        for z in 0..4usize {
-            // The bits of y, z pick the norm of J1, those of (a1, z1) and (a2, y2) the others.
-            let (y, z) = (z & 1, z >> 1);
-            for i in 0..4usize {
-                let (a1, z1) = (i & 1, i >> 1);
-                let pair = n[0][y + 2 * z] * n[1][a1 + 2 * z1];
-                for j in 0..4usize {
-                    let (a2, y2) = (j & 1, j >> 1);
-                    sums[at(a1 + a2, y + y2, z + z1)] += pair * n[2][a2 + 2 * y2];
-                }
-            }
-        }
-        // Products and sums of positive numbers: at most 11 roundings; the counts are powers of two.
-        std::array::from_fn(|i| sums[i] * WEIGHTS[i] * (1.0 + 16.0 * UNIT))
-    }
-
     /// The edge vectors of the two halves along `axis`, up to a factor per direction that cancels in the scaled Jacobian.
     pub(crate) fn halves(&self, axis: usize) -> [Self; 2] {
         let mut halves = [*self, *self];
@@ -196,6 +184,27 @@ impl Frame {
         }
         halves
     }
+}
+
+/// Upper bounds `N_ijk` of |J1| |J2| |J3|: the same means of products of norms, so that `B >= t N` for all 27 gives a
+/// scaled Jacobian of at least t. `slack` is added to each norm for the rounding of the edge vectors.
+pub(crate) fn norm_products(lengths: &Lengths, slack: f64) -> [f64; 27] {
+    let n = lengths.map(|axis| axis.map(|n| n * (1.0 + 8.0 * UNIT) + slack));
+    let mut sums = [0.0; 27];
+    for z in 0..4usize {
+        // The bits of y, z pick the norm of J1, those of (a1, z1) and (a2, y2) the others.
+        let (y, z) = (z & 1, z >> 1);
+        for i in 0..4usize {
+            let (a1, z1) = (i & 1, i >> 1);
+            let pair = n[0][y + 2 * z] * n[1][a1 + 2 * z1];
+            for j in 0..4usize {
+                let (a2, y2) = (j & 1, j >> 1);
+                sums[at(a1 + a2, y + y2, z + z1)] += pair * n[2][a2 + 2 * y2];
+            }
+        }
+    }
+    // Products and sums of positive numbers: at most 11 roundings; the counts are powers of two.
+    std::array::from_fn(|i| sums[i] * WEIGHTS[i] * (1.0 + 16.0 * UNIT))
 }
 
 /// One over the number of mixed products that make up a coefficient: half for each index that is 1.
@@ -332,7 +341,7 @@ mod tests {
                 }
             }
             // N bounds the norms.
-            let n = f.norm_products(0.0);
+            let n = norm_products(&f.lengths(), 0.0);
             CORNERS.iter().for_each(|&c| assert!(b[c].abs() <= n[c] * (1.0 + 1e-12)));
         }
     }

@@ -1,8 +1,8 @@
 //! Quality numbers of hexes: scaled Jacobian at the corners, Verdict's, certified; condition number, edge ratio, volume.
 
-use super::bernstein::{Frame, Vector, cross, dot, norm};
+use super::bernstein::{CORNERS, Frame, Lengths, Vector, cross, dot, norm};
 use super::positivity::{Positivity, decide};
-use super::scaled::{Effort, least, normalised};
+use super::scaled::{Effort, Whole, least, normal_frame};
 use super::volume::Sum;
 use crate::input::Judged;
 use crate::parallel::{piece, tasks};
@@ -13,6 +13,8 @@ use std::io::{self, Write};
 
 /// Hexes measured as one task; fixed, so that sums do not depend on the number of threads.
 const CHUNK: usize = 1 << 12;
+/// Hexes halved as one task.
+const FEW: usize = 64;
 /// Tasks between two looks at the context.
 const BATCH: usize = 64;
 
@@ -46,32 +48,56 @@ struct Sampled {
     volume: f64,
 }
 
-fn scaled_jacobian(e: [Vector; 3]) -> f64 {
-    let product = norm(e[0]) * norm(e[1]) * norm(e[2]);
+/// det J over the product of the lengths of its columns.
+fn scaled_jacobian(det: f64, lengths: [f64; 3]) -> f64 {
+    let product = lengths[0] * lengths[1] * lengths[2];
     // A collapsed edge: no direction, so no better than flat.
-    if product > 0.0 { (dot(e[0], cross(e[1], e[2])) / product).clamp(-1.0, 1.0) } else { 0.0 }
+    if product > 0.0 { (det / product).clamp(-1.0, 1.0) } else { 0.0 }
 }
 
-fn sample(p: &[Vector; 8]) -> Sampled {
-    let q = normalised(p);
-    let frame = Frame::new(&q);
-    let e = &frame.e;
-    let (mut corner, mut condition) = (1.0f64, 0.0f64);
-    for i in 0..8 {
-        let (a, b, c) = (i & 1, i >> 1 & 1, i >> 2);
-        let v = [e[0][b + 2 * c], e[1][a + 2 * c], e[2][a + 2 * b]];
-        corner = corner.min(scaled_jacobian(v));
-        let crosses = [cross(v[1], v[2]), cross(v[2], v[0]), cross(v[0], v[1])];
-        let det = dot(v[0], crosses[0]);
-        let square = |m: &[Vector; 3]| m.iter().map(|&x| dot(x, x)).sum::<f64>();
-        let here = (square(&v) * square(&crosses)).sqrt() / (3.0 * det);
-        condition = condition.max(if det > 0.0 { here } else { f64::INFINITY });
+/// A hex as all measures need it.
+struct Measured {
+    frame: Frame,
+    lengths: Lengths,
+    coefficients: [f64; 27],
+    volume: f64,
+}
+
+impl Measured {
+    fn new(p: &[Vector; 8]) -> Self {
+        let (frame, scaled) = normal_frame(p);
+        let coefficients = frame.coefficients();
+        let own = if scaled { Frame::new(p).coefficients() } else { coefficients };
+        Self { frame, lengths: frame.lengths(), coefficients, volume: own.iter().sum::<f64>() / 27.0 }
     }
-    let axes = e.map(|t| std::array::from_fn(|k| t[0][k] + t[1][k] + t[2][k] + t[3][k]));
-    let lengths = e.iter().flatten().map(|&v| norm(v));
-    let (short, long) = lengths.fold((f64::INFINITY, 0.0f64), |(s, l), n| (s.min(n), l.max(n)));
-    let volume = Frame::new(p).coefficients().iter().sum::<f64>() / 27.0;
-    Sampled { corner, verdict: corner.min(scaled_jacobian(axes)), condition, edge_ratio: long / short, volume }
+
+    fn sample(&self) -> Sampled {
+        let (e, lengths) = (&self.frame.e, &self.lengths);
+        let squares = e.map(|axis| axis.map(|v| dot(v, v)));
+        let (mut corner, mut condition) = (1.0f64, 0.0f64);
+        for (i, &at) in CORNERS.iter().enumerate() {
+            let (a, b, c) = (i & 1, i >> 1 & 1, i >> 2);
+            let [x, y, z] = [b + 2 * c, a + 2 * c, a + 2 * b];
+            let det = self.coefficients[at];
+            corner = corner.min(scaled_jacobian(det, [lengths[0][x], lengths[1][y], lengths[2][z]]));
+            let v = [e[0][x], e[1][y], e[2][z]];
+            let crosses = [cross(v[1], v[2]), cross(v[2], v[0]), cross(v[0], v[1])];
+            let of_columns = squares[0][x] + squares[1][y] + squares[2][z];
+            let of_crosses = crosses.iter().map(|&x| dot(x, x)).sum::<f64>();
+            let here = (of_columns * of_crosses).sqrt() / (3.0 * det);
+            condition = condition.max(if det > 0.0 { here } else { f64::INFINITY });
+        }
+        let axes: [Vector; 3] = e.map(|t| std::array::from_fn(|k| t[0][k] + t[1][k] + t[2][k] + t[3][k]));
+        let centre = scaled_jacobian(dot(axes[0], cross(axes[1], axes[2])), axes.map(norm));
+        let all = lengths.iter().flatten();
+        let (short, long) = all.fold((f64::INFINITY, 0.0f64), |(s, l), &n| (s.min(n), l.max(n)));
+        Sampled { corner, verdict: corner.min(centre), condition, edge_ratio: long / short, volume: self.volume }
+    }
+
+    /// Bounds of the scaled Jacobian over the whole hex; `None` for a hex without size.
+    fn whole(&self) -> Option<Whole> {
+        Whole::new(self.frame, &self.lengths, self.coefficients)
+    }
 }
 
 /// A hex and its scaled Jacobian, for the list of the worst.
@@ -122,9 +148,64 @@ struct Sums {
     edge_ratio: f64,
     histogram: [u64; 20],
     worst: Vec<WorstCell>,
+    /// Certified bounds of the least scaled Jacobian, without the doubtful hexes' lower ones.
+    certified: [f64; 2],
+    doubtful: Vec<Doubtful>,
+}
+
+/// A hex whose lower bound is below the least scaled Jacobian sampled so far.
+struct Doubtful {
+    hex: u32,
+    lower: f64,
 }
 
 impl Sums {
+    fn none() -> Self {
+        Self { corner: 1.0, verdict: 1.0, certified: [1.0, 1.0], ..Self::default() }
+    }
+
+    fn add(&mut self, hex: &Measured) -> Sampled {
+        let s = hex.sample();
+        self.corner = self.corner.min(s.corner);
+        self.verdict = self.verdict.min(s.verdict);
+        self.mean.add(s.corner);
+        self.volume.add(s.volume);
+        self.condition = self.condition.max(s.condition);
+        self.edge_ratio = self.edge_ratio.max(s.edge_ratio);
+        self.histogram[((s.corner + 1.0) * 10.0).clamp(0.0, 19.0) as usize] += 1;
+        s
+    }
+
+    /// Notes the bounds of a hex, or the hex where halving may have to say more.
+    fn bound(&mut self, hex: u32, whole: Option<Whole>) {
+        let [least, most] = &mut self.certified;
+        let Some(whole) = whole else {
+            *least = -1.0;
+            return;
+        };
+        *most = most.min(whole.upper);
+        if whole.suffices(effort(self.corner)) {
+            *least = least.min(whole.lower());
+        } else {
+            self.doubtful.push(Doubtful { hex, lower: whole.lower() });
+        }
+    }
+
+    /// Adds the sums of the hexes that follow.
+    fn append(&mut self, later: Self) {
+        self.corner = self.corner.min(later.corner);
+        self.verdict = self.verdict.min(later.verdict);
+        self.mean.add(later.mean.value());
+        self.volume.add(later.volume.value());
+        self.condition = self.condition.max(later.condition);
+        self.edge_ratio = self.edge_ratio.max(later.edge_ratio);
+        self.histogram.iter_mut().zip(later.histogram).for_each(|(a, b)| *a += b);
+        self.worst.extend(later.worst);
+        self.worst_first();
+        self.certified = [0, 1].map(|i| self.certified[i].min(later.certified[i]));
+        self.doubtful.extend(later.doubtful);
+    }
+
     fn worst_first(&mut self) {
         self.worst
             .sort_by(|a, b| a.corner_scaled_jacobian.total_cmp(&b.corner_scaled_jacobian).then(a.hex.cmp(&b.hex)));
@@ -132,20 +213,20 @@ impl Sums {
     }
 }
 
+/// How closely the worst hex is looked at: one whose lower bound reaches the least sampled value cannot lower the minimum.
+fn effort(corner: f64) -> Effort {
+    Effort { enough: corner, width: WORST_WIDTH, boxes: 20_000 }
+}
+
 fn sums(first: usize, hexes: &[[u32; 8]], points: &[Vector]) -> Sums {
-    let mut all = Sums { corner: 1.0, verdict: 1.0, ..Sums::default() };
+    let mut all = Sums::none();
     let mut bar = f64::INFINITY;
     for (i, hex) in hexes.iter().enumerate() {
-        let s = sample(&gather(hex, points));
-        all.corner = all.corner.min(s.corner);
-        all.verdict = all.verdict.min(s.verdict);
-        all.mean.add(s.corner);
-        all.volume.add(s.volume);
-        all.condition = all.condition.max(s.condition);
-        all.edge_ratio = all.edge_ratio.max(s.edge_ratio);
-        all.histogram[((s.corner + 1.0) * 10.0).clamp(0.0, 19.0) as usize] += 1;
-        if s.corner < bar {
-            all.worst.push(WorstCell { hex: (first + i) as u32, corner_scaled_jacobian: s.corner });
+        let measured = Measured::new(&gather(hex, points));
+        let corner = all.add(&measured).corner;
+        all.bound((first + i) as u32, measured.whole());
+        if corner < bar {
+            all.worst.push(WorstCell { hex: (first + i) as u32, corner_scaled_jacobian: corner });
             if all.worst.len() >= 64 {
                 all.worst_first();
                 bar = all.worst[9].corner_scaled_jacobian;
@@ -165,38 +246,30 @@ pub(crate) fn measure(
     valid: bool,
     ctx: &Context<'_>,
 ) -> Option<Quality> {
-    let mut total = Sums { corner: 1.0, verdict: 1.0, ..Sums::default() };
+    let mut total = Sums::none();
     for (b, batch) in hexes.chunks(CHUNK * BATCH).enumerate() {
         if ctx.stop().is_some() {
             return None;
         }
-        ctx.report("check quality", (b * CHUNK * BATCH) as u64, Some(2 * hexes.len() as u64), String::new);
-        let parts =
-            tasks(batch.len().div_ceil(CHUNK), |i| sums((b * BATCH + i) * CHUNK, piece(batch, CHUNK, i), points));
-        for part in parts {
-            total.corner = total.corner.min(part.corner);
-            total.verdict = total.verdict.min(part.verdict);
-            total.mean.add(part.mean.value());
-            total.volume.add(part.volume.value());
-            total.condition = total.condition.max(part.condition);
-            total.edge_ratio = total.edge_ratio.max(part.edge_ratio);
-            total.histogram.iter_mut().zip(part.histogram).for_each(|(a, b)| *a += b);
-            total.worst.extend(part.worst);
-            total.worst_first();
-        }
+        ctx.report("check quality", (b * CHUNK * BATCH) as u64, Some(hexes.len() as u64), String::new);
+        tasks(batch.len().div_ceil(CHUNK), |i| sums((b * BATCH + i) * CHUNK, piece(batch, CHUNK, i), points))
+            .into_iter()
+            .for_each(|part| total.append(part));
     }
-    // A hex whose lower bound reaches the least sampled value cannot lower the minimum.
-    let effort = Effort { enough: total.corner, width: 1e-9, boxes: 20_000 };
-    let (mut lower, mut upper) = (1.0f64, 1.0f64);
-    for (b, batch) in hexes.chunks(CHUNK * BATCH).enumerate() {
+    let [mut lower, mut upper] = total.certified;
+    let effort = effort(total.corner);
+    for batch in total.doubtful.chunks(FEW * BATCH) {
         if ctx.stop().is_some() {
             return None;
         }
-        let done = (hexes.len() + b * CHUNK * BATCH) as u64;
-        ctx.report("check quality", done, Some(2 * hexes.len() as u64), String::new);
-        let parts = tasks(batch.len().div_ceil(CHUNK), |i| {
-            let intervals = piece(batch, CHUNK, i).iter().map(|hex| least(&gather(hex, points), effort));
-            intervals.fold((1.0, 1.0), |(low, high), x| (f64::min(low, x.lower), f64::min(high, x.upper)))
+        let parts = tasks(batch.len().div_ceil(FEW), |i| {
+            piece(batch, FEW, i).iter().fold((1.0f64, 1.0f64), |(low, high), cell| {
+                if cell.lower >= effort.enough {
+                    return (low.min(cell.lower), high);
+                }
+                let bounds = least(&gather(&hexes[cell.hex as usize], points), effort);
+                (low.min(bounds.lower), high.min(bounds.upper))
+            })
         });
         for (low, high) in parts {
             lower = lower.min(low);
@@ -241,7 +314,7 @@ pub fn cell_quality(input: &Judged<'_>) -> Vec<Option<CellQuality>> {
                 return None;
             }
             let p = gather(hex, points);
-            let s = sample(&p);
+            let s = Measured::new(&p).sample();
             let valid = decide(&p) == Positivity::Positive;
             // What is not valid needs no lower bound.
             let bound = least(&p, if valid { effort(WIDTH) } else { Effort { boxes: 1, ..effort(WIDTH) } });

@@ -5,7 +5,9 @@ use crate::exit::Exit;
 use crate::files;
 use anyhow::{Context as _, bail};
 use hexfill::Context;
-use hexfill::check::{Judged, Options, Rules, cell_quality, certificate_of, judge, verify_certificate, write_cell_csv};
+use hexfill::check::{
+    Judged, Level, Options, Rules, cell_quality, certificate_of, judge, verify_certificate, write_cell_csv,
+};
 use hexfill::io::MeshData;
 use hexfill::mesh::cube::FACETS;
 use std::collections::BTreeSet;
@@ -22,6 +24,15 @@ pub struct CheckArgs {
     /// Which definition of a legal complex to judge by.
     #[arg(long, value_enum, default_value = "strict")]
     rules: RulesArg,
+    /// The highest level to judge.
+    #[arg(long, value_enum, default_value = "l5", ignore_case = true, conflicts_with_all = ["certificate", "verify_certificate"])]
+    up_to: LevelArg,
+    /// Do not compute Betti numbers, nor whether the mesh is a ball.
+    #[arg(long)]
+    no_betti: bool,
+    /// Do not measure quality: positive Jacobians are certified all the same.
+    #[arg(long, conflicts_with_all = ["certificate", "verify_certificate"])]
+    no_quality: bool,
     /// Also test that the boundary does not touch or cross itself, so that the mesh does not overlap.
     #[arg(long)]
     overlap: bool,
@@ -44,6 +55,47 @@ enum RulesArg {
     Strict,
     /// The rules of the published enumeration, in the order of the hexes.
     Weill,
+}
+
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum LevelArg {
+    /// Indices and the shape of hexes.
+    L1,
+    /// Faces that pair up, proper intersection.
+    L2,
+    /// A manifold, oriented, its boundary as given.
+    L3,
+    /// Finite positions, those of the boundary unchanged.
+    L4,
+    /// det J > 0 in every hex.
+    L5,
+}
+
+impl LevelArg {
+    const fn level(self) -> Level {
+        match self {
+            Self::L1 => Level::L1,
+            Self::L2 => Level::L2,
+            Self::L3 => Level::L3,
+            Self::L4 => Level::L4,
+            Self::L5 => Level::L5,
+        }
+    }
+}
+
+impl CheckArgs {
+    fn options(&self) -> Options {
+        let rules = match self.rules {
+            RulesArg::Strict => Rules::Strict,
+            RulesArg::Weill => Rules::Weill,
+        };
+        Options::default()
+            .rules(rules)
+            .up_to(self.up_to.level())
+            .betti(!self.no_betti)
+            .quality(!self.no_quality)
+            .overlap(self.overlap)
+    }
 }
 
 /// How many quads are listed in the file but no boundary of its hexes, or the other way round.
@@ -109,11 +161,7 @@ pub fn run(args: &CheckArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Re
             }
         };
     }
-    let rules = match args.rules {
-        RulesArg::Strict => Rules::Strict,
-        RulesArg::Weill => Rules::Weill,
-    };
-    let report = judge(&judged, &Options::default().rules(rules).overlap(args.overlap), ctx);
+    let report = judge(&judged, &args.options(), ctx);
     if let Some(path) = &args.csv {
         let cells = cell_quality(&judged);
         files::write_file(path, |out| write_cell_csv(&cells, &mut std::io::BufWriter::new(out)))?;

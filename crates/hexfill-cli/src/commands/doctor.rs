@@ -13,10 +13,9 @@ use serde::Serialize;
 pub struct DoctorArgs {
     /// The surface: a file, `-`, a catalogue name or a signature.
     surface: String,
-    /// Format of the surface.
-    #[arg(long, value_name = "FORMAT", value_parser = files::parse_format)]
-    from: Option<Format>,
-    /// Mend what has one smallest remedy: faces that are flat or come twice go, triangles are merged in pairs, an odd number of quads becomes
+    #[command(flatten)]
+    reading: files::InputArgs,
+    /// Mend what has one smallest remedy: seams that only rounding keeps open are welded, faces that are flat or come twice go, triangles are merged in pairs, an odd number of quads becomes
     /// even, quads are turned to face outward.
     #[arg(long, requires = "output")]
     fix: bool,
@@ -93,7 +92,7 @@ fn read(args: &DoctorArgs) -> anyhow::Result<MeshData> {
     if hexfill::is_named(&args.surface) {
         return Ok(Problem::load(&args.surface, None)?.data());
     }
-    let data = files::read_data(&args.surface, &args.from.into())?;
+    let data = files::read_data(&args.surface, &args.reading)?;
     if data.face_count() == 0 && !data.hexes.is_empty() {
         bail!("{} is a hex mesh, not a surface; use `hexfill check`", args.surface);
     }

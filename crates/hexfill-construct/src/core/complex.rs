@@ -4,7 +4,6 @@
 //! along disks has such edges). Invariant: local edge `k` of a tet joins its vertices [`TET_EDGES`]`[k]`, local face `i`
 //! is opposite its vertex `i`, and every tet is positively oriented (vertices 1, 2, 3 counter-clockwise seen from 0 are
 //! clockwise; that is, det(v1-v0, v2-v0, v3-v0) > 0 in an embedding).
-//! That edges need names of their own: Erickson 2014, section 4 (the complex need not be simplicial).
 
 use super::request::TetRequest;
 use crate::error::ConstructError;

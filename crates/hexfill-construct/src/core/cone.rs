@@ -1,4 +1,4 @@
-//! The core of a ball, without geometry: one apex, all triangles coned (Erickson 2014, section 3; Eppstein 1999).
+//! The core of a ball, without geometry: one apex, all triangles coned (Eppstein 1999).
 //!
 //! [`BallCore::Centred`] cones from a new vertex inside: two tets a quad, the right start for coordinates.
 //! [`BallCore::Fewest`] first cuts off each white vertex of three quads by one tet (its three black neighbours become
@@ -70,7 +70,7 @@ fn centred(request: &TetRequest<'_>) -> TetComplex {
 impl ConeTets<'_> {
     fn fewest(&self, request: &TetRequest<'_>) -> TetComplex {
         let surface = self.surface;
-        let is_white = |v: VertexId| self.colouring.white[v.index()];
+        let is_white = |v: VertexId| self.colouring.white[v];
         let cut_off = |v: VertexId| is_white(v) && surface.degree(v) == 3 && surface.n_quads() > 4;
         let mut tets: Vec<[VertexId; 4]> = Vec::new();
         let mut triangles: Vec<[VertexId; 3]> =

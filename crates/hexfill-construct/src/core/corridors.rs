@@ -1,6 +1,6 @@
 //! Components with odd numbers of quads are paired, and tets found that lead from the one to the other.
 //!
-//! A solid may have components with odd numbers of quads if their number is even (Erickson 2014, section 5, pairs them in the same way).
+//! A solid may have components with odd numbers of quads if their number is even (Erickson 2014 pairs them in the same way).
 //! What becomes of a corridor: `joins/mod.rs`.
 
 use super::complex::TetComplex;

@@ -3,12 +3,12 @@
 use crate::options::RouteChoice;
 use crate::plan::colouring::Colouring;
 use crate::plan::colours;
-use hexfill_mesh::{QuadId, QuadSurface, VertexId};
+use hexfill_mesh::{IdVec, QuadId, QuadSurface, VertexId};
 
 /// The corner of a quad that is corner 0 of its pattern (0 or 1): a black one with a black one opposite.
-pub(crate) fn turn_of(surface: &QuadSurface, white: &[bool], q: QuadId) -> u8 {
+pub(crate) fn turn_of(surface: &QuadSurface, white: &IdVec<VertexId, bool>, q: QuadId) -> u8 {
     let corners = surface.quad(q);
-    u8::from(white[corners[0].index()] || white[corners[2].index()])
+    u8::from(white[corners[0]] || white[corners[2]])
 }
 
 /// The triangles of the inner copy, outward, as vertices of the surface; triangle `2 q + t` is triangle `t` of

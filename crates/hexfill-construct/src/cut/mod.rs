@@ -82,7 +82,7 @@ fn sigma(
     let ends = complex.edge_ends();
     let classes = edge_classes(complex, &ends);
     // What an edge of the surface adds to its class: 1 if it is to be cut.
-    let is_black = |v: VertexId| !colouring.white[v.index()];
+    let is_black = |v: VertexId| !colouring.white[v];
     let form = |d: Dart| {
         let mut f = classes.of(surface_edge[d]).to_vec();
         f[0] ^= u64::from(is_black(surface.origin(d)) && is_black(surface.target(d)));

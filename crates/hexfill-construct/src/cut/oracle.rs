@@ -56,7 +56,7 @@ struct Solid {
 /// First corner of the diagonal of each quad, then its triangles: between black corners.
 fn triangles(surface: &QuadSurface, colours: &Colouring) -> Vec<[VertexId; 3]> {
     let two = |q: [VertexId; 4]| {
-        let turn = usize::from(colours.white[q[0].index()] || colours.white[q[2].index()]);
+        let turn = usize::from(colours.white[q[0]] || colours.white[q[2]]);
         let c = |k: usize| q[(k + turn) % 4];
         [[c(0), c(1), c(2)], [c(2), c(3), c(0)]]
     };
@@ -110,7 +110,7 @@ impl Solid {
         let (faces, edge) = self.boundary();
         let mut wanted = BTreeMap::new();
         for d in self.surface.darts() {
-            let black = |v: VertexId| !self.colours.white[v.index()];
+            let black = |v: VertexId| !self.colours.white[v];
             wanted.insert(edge[d], black(self.surface.origin(d)) && black(self.surface.target(d)));
         }
         let all = self.complex.faces();

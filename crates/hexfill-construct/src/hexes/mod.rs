@@ -1,5 +1,5 @@
 //! Step 5: hexes. Cells and core become one hex mesh by looking up the ids of their points; nothing is glued by hashing.
-//! (Erickson 2014, section 3 and figure 8.)
+//! (The splitting of tets: Erickson 2014, figure 8.)
 
 mod cells;
 pub(crate) mod tets;

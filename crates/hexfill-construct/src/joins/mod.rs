@@ -2,7 +2,7 @@
 //!
 //! A buffer cube needs an odd number of heavy sides, so a component with an odd number of quads leaves one cube over
 //! whose boundary is odd; it is left open. Two such cubes of one solid are joined by hexes of the core, each sharing a
-//! quad with the next (Erickson 2014, section 5, pairs odd components in the same way). The two cubes and the chain together are one
+//! quad with the next (Erickson 2014 pairs odd components in the same way). The two cubes and the chain together are one
 //! ball with an even number of quads, 1 + 1 - 2 + 4 per hex modulo 2, and a small sphere is filled by the construction itself:
 //! the driver does that, here are the balls and what becomes of their fillings.
 //! Why this stays proper: the boundary of the ball consists of quads of a complex that is proper, so it is a proper

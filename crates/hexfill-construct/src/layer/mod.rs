@@ -1,5 +1,5 @@
 //! Step 3: the buffer layer and its diagonals. Every point between the surface and its inner copy gets its
-//! id here, by rank and not by hashing, so gluing is a table look-up and takes linear time. (Erickson 2014, section 3.)
+//! id here, by rank and not by hashing, so gluing is a table look-up and takes linear time. (Erickson 2014, the buffer layer.)
 //!
 //! Id ranges, in this order: the surface's own vertices, inner copies, middles of white columns, points of the
 //! edges (`e` or `ed eo`, then `x`, `y z` or `s`), points of the quads (`d`, then `f` or `fl fp` of both triangles).
@@ -17,7 +17,7 @@ use hexfill_mesh::{Context, Dart, IdVec, QuadId, QuadSurface, VertexId};
 /// Points of one buffer cube in the whole mesh, and its kind.
 pub(crate) struct Layer<'a> {
     surface: &'a QuadSurface,
-    white: &'a [bool],
+    white: &'a IdVec<VertexId, bool>,
     /// Per vertex: its inner copy.
     inner: IdVec<VertexId, PointId>,
     /// Per white vertex: the middle of its column.
@@ -56,7 +56,7 @@ impl<'a> Layer<'a> {
     /// # Errors
     /// [`ConstructError::TooLarge`]; [`ConstructError::NoCell`] if the library lacks a pattern that is needed.
     fn new(plan: &'a Plan<'_>, sides: LightSides) -> Result<Self, ConstructError> {
-        let (surface, white) = (plan.surface, plan.colours.white.as_slice());
+        let (surface, white) = (plan.surface, &plan.colours.white);
         let (n_quads, n_vertices) = (surface.n_quads(), surface.n_vertices());
         // At most 3 points an edge and 5 a quad, 2 a vertex; checked once so that plain u32 arithmetic is safe.
         let bound = 3 * n_vertices + 6 * n_quads + 5 * n_quads;
@@ -72,13 +72,13 @@ impl<'a> Layer<'a> {
         let vertices = || (0..n_vertices).map(VertexId::new);
         let used = |v: VertexId| surface.degree(v) > 0;
         let inner = vertices().map(|v| if used(v) { take(1) } else { PointId::NONE }).collect();
-        let middle = vertices().map(|v| if white[v.index()] { take(1) } else { PointId::NONE }).collect();
+        let middle = vertices().map(|v| if white[v] { take(1) } else { PointId::NONE }).collect();
         let mut edge = IdVec::filled(PointId::NONE, 4 * n_quads);
         for d in surface.darts() {
             let twin = surface.twin(d);
             if d < twin {
                 // Uncut: e and x, or e, y, z. Cut: ed and eo, and s if heavy.
-                let first = take(2 + u32::from(!sides.light[d.index()]));
+                let first = take(2 + u32::from(!sides.light[d]));
                 edge[d] = first;
                 edge[twin] = first;
             }
@@ -87,7 +87,7 @@ impl<'a> Layer<'a> {
         let points_of = |(q, &turn): (QuadId, &u8)| {
             let corners = surface.quad(q);
             let odd = [1, 3].map(|k| corners[(k + usize::from(turn)) % 4]);
-            take(1 + odd.iter().map(|v| if white[v.index()] { 1 } else { 2 }).sum::<u32>())
+            take(1 + odd.iter().map(|&v| if white[v] { 1 } else { 2 }).sum::<u32>())
         };
         let facet = turn.enumerate().map(points_of).collect();
         // A consistent start: the star at the end with the smaller id.
@@ -128,17 +128,17 @@ impl<'a> Layer<'a> {
     }
 
     fn is_heavy(&self, d: Dart) -> bool {
-        !self.sides.light[d.index()]
+        !self.sides.light[d]
     }
 
     /// Whether Sigma crosses the inner edge under a dart.
     pub(crate) fn is_cut(&self, d: Dart) -> bool {
-        !self.white[self.surface.origin(d).index()] && !self.white[self.surface.target(d).index()]
+        !self.white[self.surface.origin(d)] && !self.white[self.surface.target(d)]
     }
 
     /// Whether the cube of a quad is left open.
     pub(crate) fn is_open(&self, q: QuadId) -> bool {
-        self.sides.open[q.index()]
+        self.sides.open[q]
     }
 
     /// First id after the layer's walls.
@@ -173,7 +173,7 @@ impl<'a> Layer<'a> {
 
     /// The pattern of a quad's cell.
     pub(crate) fn pattern(&self, q: QuadId) -> Pattern {
-        let white = [1, 3].map(|k| self.white[self.corner(q, k).index()]);
+        let white = [1, 3].map(|k| self.white[self.corner(q, k)]);
         let side = |k: u8| {
             let d = self.dart(q, k);
             if !self.is_heavy(d) {
@@ -210,7 +210,7 @@ impl<'a> Layer<'a> {
     /// The point of inner triangle `t` of a quad on the side of its odd corner (`lone`) or of its diagonal; both
     /// agree if the triangle is not cut.
     pub(crate) fn face_point(&self, q: QuadId, t: u8, lone: bool) -> PointId {
-        let white = |t: u8| self.white[self.corner(q, 2 * t + 1).index()];
+        let white = |t: u8| self.white[self.corner(q, 2 * t + 1)];
         let size = |t: u8| if white(t) { 1 } else { 2 };
         let first = self.facet[q].plus(1 + if t == 1 { size(0) } else { 0 });
         first.plus(u32::from(!white(t) && !lone))

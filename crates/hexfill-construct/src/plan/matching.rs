@@ -1,27 +1,27 @@
-//! Which sides are heavy. Every quad needs an odd number of heavy sides, best three.
+//! Which sides are heavy: every quad needs an odd number of heavy sides, best three.
 //!
 //! The *light* sides form a set with an odd number at every quad as well: a perfect matching of the dual graph
 //! (one light side each) where possible. The dual graph is 4-regular and, for a sphere, 4-edge-connected, so a
 //! perfect matching exists (Tutte); here a greedy matching (smallest residual degree first, Karp and Sipser 1981)
 //! is improved by short augmenting paths, and the few quads that are left are paired along a spanning tree: such a
 //! path adds 0 or 2 to the light sides of the quads it passes (a T-join). All steps take linear time, because the
-//! search for one augmenting path visits a bounded number of quads. Why a matching: Erickson 2014, section 3 (parity of the
-//! buffer cubes).
+//! search for one augmenting path visits a bounded number of quads. Why a matching: see the page
+//! `construction` of the book, step 3.
 
 use crate::error::ConstructError;
-use hexfill_mesh::{Context, Dart, QuadId, QuadSurface};
+use hexfill_mesh::{Context, Dart, IdVec, QuadId, QuadSurface};
 
 /// The light sides, an odd number at each quad (but for those left open).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LightSides {
     /// Per dart: whether its edge is light (equal for twins).
-    pub light: Vec<bool>,
+    pub light: IdVec<Dart, bool>,
     /// Number of quads the matching left over, paired by tree paths.
     pub n_unmatched: usize,
     /// Number of quads with three light sides.
     pub n_triple: usize,
     /// Per quad: whether its cube is left open; only such a quad has an even number of light sides.
-    pub open: Vec<bool>,
+    pub open: IdVec<QuadId, bool>,
 }
 
 /// Quads visited in the search for one augmenting path.
@@ -40,27 +40,27 @@ pub fn light_sides(
     variant: u64,
     ctx: &Context<'_>,
 ) -> Result<LightSides, ConstructError> {
-    let mut open = vec![false; surface.n_quads()];
-    left_open.iter().for_each(|q| open[q.index()] = true);
+    let mut open = IdVec::filled(false, surface.n_quads());
+    left_open.iter().for_each(|&q| open[q] = true);
     let mut size = vec![0usize; surface.n_components()];
-    for (q, open) in open.iter().enumerate() {
-        size[surface.component(QuadId::new(q))] += 1 + usize::from(*open);
+    for (q, open) in open.enumerate() {
+        size[surface.component(q)] += 1 + usize::from(*open);
     }
     if let Some(component) = size.iter().position(|s| s % 2 == 1) {
         return Err(ConstructError::OddComponent { component, given: size[component] });
     }
     let mut mate = greedy(surface, variant);
     augment(surface, &mut mate, ctx)?;
-    let mut light = vec![false; 4 * surface.n_quads()];
+    let mut light = IdVec::filled(false, 4 * surface.n_quads());
     for &d in mate.iter().filter(|d| d.is_some()) {
-        light[d.index()] = true;
+        light[d] = true;
     }
     let n_unmatched = mate.iter().filter(|d| d.is_none()).count();
-    let mut odd: Vec<bool> = mate.iter().zip(&open).map(|(&d, &open)| d.is_none() != open).collect();
-    if odd.contains(&true) {
+    let mut odd: IdVec<QuadId, bool> = mate.iter().zip(&open).map(|(&d, &open)| d.is_none() != open).collect();
+    if odd.as_slice().contains(&true) {
         tree_join(surface, &mut odd, &mut light);
     }
-    let n_triple = light.chunks(4).filter(|l| l.iter().filter(|&&x| x).count() == 3).count();
+    let n_triple = light.as_slice().chunks(4).filter(|l| l.iter().filter(|&&x| x).count() == 3).count();
     Ok(LightSides { light, n_unmatched, n_triple, open })
 }
 
@@ -75,60 +75,53 @@ fn scramble(variant: u64, x: usize) -> u64 {
     z ^ (z >> 31)
 }
 
-/// Per quad: its dart across which it is matched, or none.
-fn greedy(surface: &QuadSurface, variant: u64) -> Vec<Dart> {
+/// The quads across the sides of a quad, with the darts there.
+fn around(surface: &QuadSurface, q: QuadId) -> impl Iterator<Item = (Dart, QuadId)> + '_ {
+    (0..4).map(move |k| Dart::new(q, k)).map(|d| (d, surface.twin(d).quad()))
+}
+
+/// Per quad: its dart across which it is matched, or none. Smallest residual degree first.
+fn greedy(surface: &QuadSurface, variant: u64) -> IdVec<QuadId, Dart> {
     let n = surface.n_quads();
-    let mut order: Vec<u32> = (0..n as u32).collect();
-    order.sort_by_key(|&q| scramble(variant, q as usize));
-    let mut mate = vec![Dart::NONE; n];
-    let mut residual = vec![4u8; n];
-    let mut ready: Vec<u32> = Vec::new();
-    let mut next = 0usize;
-    loop {
-        let q = match ready.pop() {
-            Some(q) => q as usize,
-            None if next < n => {
-                next += 1;
-                order[next - 1] as usize
-            }
-            None => return mate,
-        };
+    let mut mate = IdVec::filled(Dart::NONE, n);
+    let mut order: Vec<QuadId> = mate.ids().collect();
+    order.sort_by_key(|q| scramble(variant, q.index()));
+    let mut rest = order.into_iter();
+    let mut residual: IdVec<QuadId, u8> = IdVec::filled(4, n);
+    // Quads with one neighbour left: matching it with that loses nothing (Karp and Sipser).
+    let mut ready: Vec<QuadId> = Vec::new();
+    while let Some(q) = ready.pop().or_else(|| rest.next()) {
         if mate[q].is_some() {
             continue;
         }
-        let free = (0..4).map(|k| Dart::new(QuadId::new(q), k)).filter(|&d| {
-            let other = surface.twin(d).quad().index();
-            other != q && mate[other].is_none()
-        });
-        let Some(d) = free.min_by_key(|&d| {
-            (residual[surface.twin(d).quad().index()], scramble(variant, d.index().min(surface.twin(d).index())))
-        }) else {
-            continue;
-        };
-        let other = surface.twin(d).quad().index();
+        let free = around(surface, q).filter(|&(_, other)| other != q && mate[other].is_none());
+        let rank =
+            |&(d, other): &(Dart, QuadId)| (residual[other], scramble(variant, d.index().min(surface.twin(d).index())));
+        let Some((d, other)) = free.min_by_key(rank) else { continue };
         mate[q] = d;
         mate[other] = surface.twin(d);
         for gone in [q, other] {
-            for k in 0..4 {
-                let r = surface.twin(Dart::new(QuadId::new(gone), k)).quad().index();
-                residual[r] = residual[r].saturating_sub(1);
+            for (_, r) in around(surface, gone) {
+                residual[r] = u8::saturating_sub(residual[r], 1);
                 if mate[r].is_none() && residual[r] == 1 {
-                    ready.push(r as u32);
+                    ready.push(r);
                 }
             }
         }
     }
+    mate
 }
 
 /// Alternating breadth-first search from each free quad. Every quad is entered once, so a path found is simple;
 /// odd cycles may hide a path, which costs optimality and never correctness.
-fn augment(surface: &QuadSurface, mate: &mut [Dart], ctx: &Context<'_>) -> Result<(), ConstructError> {
+fn augment(surface: &QuadSurface, mate: &mut IdVec<QuadId, Dart>, ctx: &Context<'_>) -> Result<(), ConstructError> {
     let n = mate.len();
-    let mut stamp = vec![u32::MAX; n];
+    // Per quad: the last root whose search met it.
+    let mut stamp = IdVec::filled(QuadId::NONE, n);
     // Per quad reached by an unmatched edge: the dart (of the even quad before it) that reached it.
-    let mut from = vec![Dart::NONE; n];
-    let mut queue: Vec<usize> = Vec::new();
-    for root in 0..n {
+    let mut from: IdVec<QuadId, Dart> = IdVec::filled(Dart::NONE, n);
+    let mut queue: Vec<QuadId> = Vec::new();
+    for root in mate.ids() {
         if mate[root].is_some() {
             continue;
         }
@@ -137,47 +130,44 @@ fn augment(surface: &QuadSurface, mate: &mut [Dart], ctx: &Context<'_>) -> Resul
         }
         queue.clear();
         queue.push(root);
-        stamp[root] = root as u32;
+        stamp[root] = root;
         let mut at = 0;
         let mut end = None;
         'search: while at < queue.len() && queue.len() < SEARCH_LIMIT {
             let q = queue[at];
             at += 1;
-            for k in 0..4 {
-                let d = Dart::new(QuadId::new(q), k);
-                let other = surface.twin(d).quad().index();
-                if stamp[other] == root as u32 {
+            for (d, other) in around(surface, q) {
+                if stamp[other] == root {
                     continue;
                 }
-                stamp[other] = root as u32;
+                stamp[other] = root;
                 from[other] = d;
                 if mate[other].is_none() {
                     end = Some(other);
                     break 'search;
                 }
-                let even = surface.twin(mate[other]).quad().index();
-                stamp[even] = root as u32;
+                let even = surface.twin(mate[other]).quad();
+                stamp[even] = root;
                 queue.push(even);
             }
         }
         while let Some(odd) = end {
             let d = from[odd];
-            let even = d.quad().index();
+            let even = d.quad();
             let before = mate[even];
             mate[even] = d;
             mate[odd] = surface.twin(d);
-            end = (even != root).then(|| surface.twin(before).quad().index());
+            end = (even != root).then(|| surface.twin(before).quad());
         }
     }
     Ok(())
 }
 
-/// Toggles the tree edges below which an odd number of marked quads lies.
-fn tree_join(surface: &QuadSurface, odd: &mut [bool], light: &mut [bool]) {
-    let n = odd.len();
-    let mut seen = vec![false; n];
-    let mut order: Vec<(usize, Dart)> = Vec::with_capacity(n);
-    for root in 0..n {
+/// Toggles the tree edges below which an odd number of marked quads lies: the T-join of a spanning forest.
+fn tree_join(surface: &QuadSurface, odd: &mut IdVec<QuadId, bool>, light: &mut IdVec<Dart, bool>) {
+    let mut seen = IdVec::filled(false, odd.len());
+    let mut order: Vec<(QuadId, Dart)> = Vec::with_capacity(odd.len());
+    for root in odd.ids() {
         if seen[root] {
             continue;
         }
@@ -187,9 +177,7 @@ fn tree_join(surface: &QuadSurface, odd: &mut [bool], light: &mut [bool]) {
         while at < order.len() {
             let (q, _) = order[at];
             at += 1;
-            for k in 0..4 {
-                let d = Dart::new(QuadId::new(q), k);
-                let other = surface.twin(d).quad().index();
+            for (d, other) in around(surface, q) {
                 if !seen[other] {
                     seen[other] = true;
                     order.push((other, surface.twin(d)));
@@ -200,10 +188,10 @@ fn tree_join(surface: &QuadSurface, odd: &mut [bool], light: &mut [bool]) {
     for &(q, up) in order.iter().rev() {
         if odd[q] && up.is_some() {
             let across = surface.twin(up);
-            light[up.index()] ^= true;
-            light[across.index()] ^= true;
+            light[up] ^= true;
+            light[across] ^= true;
             odd[q] = false;
-            odd[across.quad().index()] ^= true;
+            odd[across.quad()] ^= true;
         }
     }
 }
@@ -216,9 +204,9 @@ mod tests {
     fn check(surface: &QuadSurface) -> LightSides {
         let l = light_sides(surface, &[], 0, &Context::default()).unwrap();
         for d in surface.darts() {
-            assert_eq!(l.light[d.index()], l.light[surface.twin(d).index()]);
+            assert_eq!(l.light[d], l.light[surface.twin(d)]);
         }
-        assert!(l.light.chunks(4).all(|c| c.iter().filter(|&&x| x).count() % 2 == 1));
+        assert!(l.light.as_slice().chunks(4).all(|c| c.iter().filter(|&&x| x).count() % 2 == 1));
         l
     }
 
@@ -239,14 +227,14 @@ mod tests {
     #[test]
     fn the_tree_pairs_any_even_set() {
         let s = torus(6, 5, 0).unwrap();
-        let mut odd = vec![false; 30];
-        odd[3] = true;
-        odd[29] = true;
+        let mut odd = IdVec::filled(false, 30);
+        odd[QuadId(3)] = true;
+        odd[QuadId(29)] = true;
         let wanted = odd.clone();
-        let mut light = vec![false; 120];
+        let mut light = IdVec::filled(false, 120);
         tree_join(&s, &mut odd, &mut light);
-        for q in 0..30 {
-            assert_eq!(light[4 * q..4 * q + 4].iter().filter(|&&x| x).count() % 2 == 1, wanted[q]);
+        for (c, wanted) in light.as_slice().chunks(4).zip(wanted) {
+            assert_eq!(c.iter().filter(|&&x| x).count() % 2 == 1, wanted);
         }
     }
 
@@ -254,7 +242,7 @@ mod tests {
     fn an_odd_component_is_refused_or_left_open_at_one_quad() {
         let s = torus(3, 5, 0).unwrap();
         let l = light_sides(&s, &[QuadId(7)], 0, &Context::default()).unwrap();
-        for (q, c) in l.light.chunks(4).enumerate() {
+        for (q, c) in l.light.as_slice().chunks(4).enumerate() {
             assert_eq!(c.iter().filter(|&&x| x).count() % 2 == 0, q == 7);
         }
 

@@ -10,7 +10,7 @@ use super::matching::LightSides;
 use crate::cells::library::CellLibrary;
 use crate::cells::pattern::Role;
 use hexfill_geometry::{Vector, cross, det, dot, norm, sub};
-use hexfill_mesh::{Dart, QuadId, QuadSurface};
+use hexfill_mesh::{Dart, IdVec, QuadId, QuadSurface, VertexId};
 
 /// Matched edges of an alternating cycle at most; fewer for large surfaces, so that the work stays linear.
 const CYCLE: usize = 5;
@@ -35,7 +35,7 @@ fn loads(library: &CellLibrary) -> Option<[f64; 4]> {
 }
 
 /// The solid angle inside the surface at every vertex: the area of a spherical polygon (Girard's theorem).
-fn solid_angles(surface: &QuadSurface, points: &[Vector]) -> Vec<f64> {
+fn solid_angles(surface: &QuadSurface, points: &[Vector]) -> IdVec<VertexId, f64> {
     use std::f64::consts::PI;
     let first = surface.dart_of_vertices();
     let angle = |v: usize| {
@@ -61,13 +61,13 @@ fn solid_angles(surface: &QuadSurface, points: &[Vector]) -> Vec<f64> {
 /// The matching under improvement.
 struct Strain<'a> {
     surface: &'a QuadSurface,
-    white: &'a [bool],
+    white: &'a IdVec<VertexId, bool>,
     loads: [f64; 4],
-    angle: Vec<f64>,
+    angle: IdVec<VertexId, f64>,
     /// Per vertex: hexes of the buffer cubes there.
-    hexes: Vec<f64>,
+    hexes: IdVec<VertexId, f64>,
     /// Per quad: its light dart.
-    light: Vec<Dart>,
+    light: IdVec<QuadId, Dart>,
     cost: f64,
     cycle: usize,
 }
@@ -76,32 +76,32 @@ impl Strain<'_> {
     /// Adds (or takes away) the hexes of quad `d.quad()` with light side `d`.
     fn add(&mut self, d: Dart, sign: f64) {
         let corners = self.surface.quad(d.quad());
-        let k = d.index() % 4;
+        let k = d.side();
         // From the black end of the light side, away along it, round the quad.
-        let black_first = !self.white[corners[k].index()];
+        let black_first = !self.white[corners[k]];
         for i in 0..4 {
             let corner = if black_first { (k + i) % 4 } else { (k + 5 - i) % 4 };
-            let v = corners[corner].index();
+            let v = corners[corner];
             self.cost -= self.term(v);
             self.hexes[v] += sign * self.loads[i];
             self.cost += self.term(v);
         }
     }
 
-    fn term(&self, v: usize) -> f64 {
+    fn term(&self, v: VertexId) -> f64 {
         (self.hexes[v] / self.angle[v]).powi(POWER)
     }
 
     fn set_light(&mut self, d: Dart) {
-        let old = self.light[d.quad().index()];
+        let old = self.light[d.quad()];
         self.add(old, -1.0);
         self.add(d, 1.0);
-        self.light[d.quad().index()] = d;
+        self.light[d.quad()] = d;
     }
 
     /// Looks for an alternating cycle that closes at `start` and lowers the cost below `bound`; `lost` has lost its mate.
     fn extend(&mut self, start: QuadId, lost: QuadId, path: &mut Vec<QuadId>, bound: f64) -> bool {
-        let before = self.light[lost.index()];
+        let before = self.light[lost];
         for k in 0..4 {
             let d = Dart::new(lost, k);
             let across = self.surface.twin(d);
@@ -111,7 +111,7 @@ impl Strain<'_> {
             }
             if other == start {
                 // The edge that was given up first is no way back.
-                let first = self.light[start.index()];
+                let first = self.light[start];
                 if across == first {
                     continue;
                 }
@@ -123,7 +123,7 @@ impl Strain<'_> {
                 self.set_light(first);
                 self.set_light(before);
             } else if path.len() < self.cycle && !path.contains(&other) {
-                let mate = self.light[other.index()];
+                let mate = self.light[other];
                 let next = self.surface.twin(mate).quad();
                 if path.contains(&next) || next == start {
                     continue;
@@ -150,36 +150,35 @@ impl Strain<'_> {
 pub(crate) fn relieve(
     surface: &QuadSurface,
     points: &[Vector],
-    white: &[bool],
+    white: &IdVec<VertexId, bool>,
     sides: &mut LightSides,
     library: &CellLibrary,
 ) -> Option<f64> {
     let loads = loads(library)?;
-    let bipartite = surface.darts().all(|d| white[surface.origin(d).index()] != white[surface.target(d).index()]);
+    let bipartite = surface.darts().all(|d| white[surface.origin(d)] != white[surface.target(d)]);
     if sides.n_unmatched > 0 || !bipartite {
         return None;
     }
     let n = surface.n_quads();
-    let light: Vec<Dart> =
-        (0..n).filter_map(|q| (0..4).map(|k| Dart::new(QuadId::new(q), k)).find(|d| sides.light[d.index()])).collect();
+    let darts = |q: usize| (0..4).map(move |k| Dart::new(QuadId::new(q), k));
+    let light = (0..n).filter_map(|q| darts(q).find(|&d| sides.light[d])).collect();
     let mut strain = Strain {
         surface,
         white,
         loads,
         angle: solid_angles(surface, points),
-        hexes: vec![0.0; surface.n_vertices()],
+        hexes: IdVec::filled(0.0, surface.n_vertices()),
         light,
         cost: 0.0,
         cycle: 2 * if n <= LARGE { CYCLE } else { CYCLE_IF_LARGE },
     };
-    for q in 0..n {
+    for q in (0..n).map(QuadId::new) {
         strain.add(strain.light[q], 1.0);
     }
     for _ in 0..SWEEPS {
         let mut improved = false;
-        for q in 0..n {
-            let mate = surface.twin(strain.light[q]).quad();
-            let start = QuadId::new(q);
+        for start in strain.light.ids() {
+            let mate = surface.twin(strain.light[start]).quad();
             if mate <= start {
                 continue;
             }
@@ -191,11 +190,11 @@ pub(crate) fn relieve(
             break;
         }
     }
-    sides.light.fill(false);
-    for d in &strain.light {
-        sides.light[d.index()] = true;
+    sides.light = IdVec::filled(false, 4 * n);
+    for &d in &strain.light {
+        sides.light[d] = true;
     }
-    Some((0..surface.n_vertices()).map(|v| strain.term(v)).sum())
+    Some(strain.hexes.ids().map(|v| strain.term(v)).sum())
 }
 
 #[cfg(test)]
@@ -243,9 +242,9 @@ mod tests {
         let mut after = before.clone();
         let first = relieve(&surface, &points, &colours.white, &mut after, library).unwrap();
         for d in surface.darts() {
-            assert_eq!(after.light[d.index()], after.light[surface.twin(d).index()]);
+            assert_eq!(after.light[d], after.light[surface.twin(d)]);
         }
-        assert!(after.light.chunks(4).all(|c| c.iter().filter(|&&x| x).count() == 1));
+        assert!(after.light.as_slice().chunks(4).all(|c| c.iter().filter(|&&x| x).count() == 1));
         assert_ne!(before, after);
         // Nothing is left to gain, and the same sum comes out when counted afresh.
         let mut again = after.clone();

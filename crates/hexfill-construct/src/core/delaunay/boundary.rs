@@ -119,7 +119,7 @@ impl Solid {
     /// Draws a boundary point onto a neighbour that lies on the same edge or in the same triangle.
     fn draw_along_boundary(&mut self, v: VertexId, floor: f64) -> bool {
         let Some(polygons) = self.polygons(v) else { return false };
-        let floor = floor.min(self.least_now(v) / 2.0);
+        let floor = floor.min(self.least_now(v) / 2.0).max(0.0);
         let candidates: Vec<VertexId> = match polygons.as_slice() {
             [(all, _)] => all.clone(),
             [(one, _), _] => vec![one[0], one[one.len() - 1]],
@@ -132,8 +132,7 @@ impl Solid {
             if !fits {
                 continue;
             }
-            let q = self.least(&self.drawn(v, u), VertexId::NONE, [0.0; 3]);
-            if q > floor && q > 0.0 && best.is_none_or(|b| q > b.0) {
+            if let Some(q) = self.least_drawn(best.map_or(floor, |b| b.0), v, u) {
                 best = Some((q, u));
             }
         }
@@ -208,6 +207,7 @@ impl Solid {
         }
         let mut tets = self.star(v);
         tets.extend(faces.iter().map(|([a, b, c], _)| [v, *a, *b, *c]));
+        let mut trial = tets.clone();
         let neighbours = self.neighbours(v);
         let here = self.at(v);
         let mean: Vector =
@@ -218,8 +218,7 @@ impl Solid {
             let mut step = reach;
             for _ in 0..30 {
                 let p = std::array::from_fn(|c| here[c] + step * direction[c]);
-                let q = self.least(&tets, v, p);
-                if q > best.0 {
+                if let Some(q) = self.least_above(best.0, &mut trial, v, p) {
                     best = (q, p, step);
                 }
                 step /= 2.0;
@@ -228,7 +227,7 @@ impl Solid {
         if best.0 <= 0.0 {
             return false;
         }
-        let p = self.climb(&tets, v, best);
+        let p = self.climb(&mut trial, v, best);
         self.points[v] = p;
         self.replace_tets(v, &tets);
         self.replace_faces(v, &faces);

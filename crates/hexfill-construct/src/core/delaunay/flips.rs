@@ -25,6 +25,20 @@ const PASSES: usize = 4;
 /// Tets to take out, and those that fill the same place.
 type Exchange = (Vec<TetId>, Vec<[VertexId; 4]>);
 
+/// An edge and the vertices round it, in order.
+struct Ring {
+    ends: [VertexId; 2],
+    vertices: Vec<VertexId>,
+}
+
+impl Ring {
+    /// The tets of both ends on a triangle of the ring.
+    fn both(&self, i: usize, j: usize, k: usize) -> [[VertexId; 4]; 2] {
+        let ([a, b], [x, y, z]) = (self.ends, [i, j, k].map(|i| self.vertices[i]));
+        [[a, x, y, z], [b, x, z, y]]
+    }
+}
+
 impl Solid {
     /// Flips and moves until no bad tet gets better that way.
     pub(super) fn improve(&mut self, ctx: &Context<'_>) -> Result<(), StopReason> {
@@ -57,12 +71,18 @@ impl Solid {
     fn improve_tet(&mut self, t: TetId) -> bool {
         let tet = self.tets[t];
         let mut best: Option<(f64, Exchange)> = None;
-        let edges = TET_EDGES.map(|[i, j]| self.without_edge(tet[i], tet[j]));
-        let faces = [0, 1, 2, 3].map(|i| self.without_face(t, i));
-        for (old, new) in edges.into_iter().chain(faces).flatten() {
-            let before = old.iter().map(|&u| self.quality(self.tets[u])).fold(f64::INFINITY, f64::min);
+        // Nothing that is no better than what is there, or than the best flip so far, is worth looking at to its end.
+        let bound = |old: &[TetId], best: &Option<(f64, Exchange)>| {
+            (self.least_of(old) * 1.0001).max(best.as_ref().map_or(0.0, |b| b.0))
+        };
+        for (old, ring) in TET_EDGES.iter().filter_map(|&[i, j]| self.ring(tet[i], tet[j])) {
+            if let Some((after, new)) = self.triangulate(&ring, bound(&old, &best)) {
+                best = Some((after, (old, new)));
+            }
+        }
+        for (old, new) in (0..4).filter_map(|i| self.without_face(t, i)) {
             let after = new.iter().map(|&u| self.quality(u)).fold(f64::INFINITY, f64::min);
-            if after > before * 1.0001 && after > 0.0 && best.as_ref().is_none_or(|b| after > b.0) {
+            if after > bound(&old, &best) {
                 best = Some((after, (old, new)));
             }
         }
@@ -82,6 +102,10 @@ impl Solid {
         self.quality(tet) > before * 1.01
     }
 
+    fn least_of(&self, tets: &[TetId]) -> f64 {
+        tets.iter().map(|&u| self.quality(self.tets[u])).fold(f64::INFINITY, f64::min)
+    }
+
     /// Removes edges of three tets where the two that take their place are good enough: one tet less each.
     pub(super) fn save_tets(&mut self) {
         // Tets that come of this are looked at next time.
@@ -91,13 +115,9 @@ impl Solid {
                 continue;
             }
             for [i, j] in TET_EDGES {
-                let Some((old, new)) = self.without_edge(tet[i], tet[j]) else { continue };
-                if old.len() != 3 {
-                    continue;
-                }
-                let before = old.iter().map(|&u| self.quality(self.tets[u])).fold(f64::INFINITY, f64::min);
-                let after = new.iter().map(|&u| self.quality(u)).fold(f64::INFINITY, f64::min);
-                if after > 0.0 && after >= before.min(5.0 * FLOOR_INSIDE) {
+                let Some((old, ring)) = self.ring(tet[i], tet[j]).filter(|(old, _)| old.len() == 3) else { continue };
+                let Some((after, new)) = self.triangulate(&ring, 0.0) else { continue };
+                if after >= self.least_of(&old).min(5.0 * FLOOR_INSIDE) {
                     self.replace(&old, &new);
                     break;
                 }
@@ -143,23 +163,23 @@ impl Solid {
                 cross(sub(y, x), sub(z, x))
             });
             let reach = [sub(p, q), sub(x, y), sub(y, z)].map(|d| dot(d, d)).into_iter().fold(0.0, f64::max).sqrt();
+            let mut trial = new.clone();
             let mut found = (0.0, middle, 0.0);
             for normal in normals {
                 let length = norm(normal);
                 let mut step = reach;
                 for _ in 0..20 {
                     let at = std::array::from_fn(|c| middle[c] - step * normal[c] / length);
-                    let here = self.least(&new, v, at);
-                    if here > found.0 {
+                    if let Some(here) = self.least_above(found.0, &mut trial, v, at) {
                         found = (here, at, step);
                     }
                     step /= 2.0;
                 }
             }
             if found.0 > 0.0 {
-                let at = self.climb(&new, v, found);
-                let here = self.least(&new, v, at);
-                if best.as_ref().is_none_or(|b| here > b.0) {
+                let at = self.climb(&mut trial, v, found);
+                let bound = best.as_ref().map_or(f64::NEG_INFINITY, |b| b.0);
+                if let Some(here) = self.least_above(bound, &mut trial, v, at) {
                     best = Some((here, at, (old, new)));
                 }
             }
@@ -185,8 +205,9 @@ impl Solid {
         }
     }
 
-    /// The tets round an inner edge, and the best ones that fill the same place without it.
-    fn without_edge(&self, a: VertexId, b: VertexId) -> Option<Exchange> {
+    /// The tets round an inner edge, and the edge with the ring of vertices round it. `None` if the edge is on the boundary or has
+    /// too many tets.
+    fn ring(&self, a: VertexId, b: VertexId) -> Option<(Vec<TetId>, Ring)> {
         let old: Vec<TetId> = self.tets_at[a].iter().copied().filter(|&t| self.tets[t].contains(&b)).collect();
         if old.len() > RING || old.len() < 3 {
             return None;
@@ -215,20 +236,27 @@ impl Solid {
                 return None;
             }
         }
-        let n = ring.len();
-        if n != old.len() {
-            return None;
-        }
-        let both = |i: usize, j: usize, k: usize| [[a, ring[i], ring[j], ring[k]], [b, ring[i], ring[k], ring[j]]];
+        (ring.len() == old.len()).then_some((old, Ring { ends: [a, b], vertices: ring }))
+    }
+
+    /// The tets that fill the place of a ring without its edge: two on every triangle of the triangulation of the ring whose worst
+    /// tet is best, if that is better than `bound` (at least 0).
+    fn triangulate(&self, ring: &Ring, bound: f64) -> Option<(f64, Vec<[VertexId; 4]>)> {
+        let n = ring.vertices.len();
         // Entry i n + j: the ring from i to j closed by the edge i j, its worst tet and where the triangle at that edge ends.
         let mut best = vec![(f64::INFINITY, 0); n * n];
         for width in 2..n {
             for i in 0..n - width {
                 let j = i + width;
-                let mut found = (f64::NEG_INFINITY, 0);
+                // No triangulation is better than the bound with a part that is not.
+                let mut found = (bound, 0);
                 for k in i + 1..j {
-                    let [p, q] = both(i, k, j).map(|t| self.quality(t));
-                    let worst = p.min(q).min(best[i * n + k].0).min(best[k * n + j].0);
+                    let parts = best[i * n + k].0.min(best[k * n + j].0);
+                    if parts <= found.0 {
+                        continue;
+                    }
+                    let [p, q] = ring.both(i, k, j).map(|t| self.quality(t));
+                    let worst = p.min(q).min(parts);
                     if worst > found.0 {
                         found = (worst, k);
                     }
@@ -236,7 +264,8 @@ impl Solid {
                 best[i * n + j] = found;
             }
         }
-        if best[n - 1].0 <= 0.0 {
+        let after = best[n - 1].0;
+        if after <= bound {
             return None;
         }
         let mut new = Vec::with_capacity(2 * n - 4);
@@ -244,11 +273,11 @@ impl Solid {
         while let Some((i, j)) = stack.pop() {
             if j - i >= 2 {
                 let k = best[i * n + j].1;
-                new.extend(both(i, k, j));
+                new.extend(ring.both(i, k, j));
                 stack.extend([(i, k), (k, j)]);
             }
         }
-        Some((old, new))
+        Some((after, new))
     }
 
     /// The two tets at an inner face, and the three round the edge between their far corners.

@@ -1,4 +1,4 @@
-//! Vectors inside, so that tets grow gently from the surface inward.
+//! Points inside, so that tets grow gently from the surface inward.
 //!
 //! A Delaunay tetrahedralisation of the surface's vertices alone has needles that reach across a thick solid, and the hexes of a
 //! needle are as thin. Delaunay refinement (Chew 1989, Ruppert 1995, Shewchuk 1998) puts a point into the centre of the

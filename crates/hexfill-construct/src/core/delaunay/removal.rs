@@ -33,11 +33,10 @@ impl Solid {
     }
 
     fn draw_inside(&mut self, v: VertexId) -> bool {
-        let floor = FLOOR_INSIDE.min(self.least_now(v));
+        let floor = FLOOR_INSIDE.min(self.least_now(v)).max(0.0);
         let mut best: Option<(f64, VertexId)> = None;
         for u in self.neighbours(v) {
-            let q = self.least(&self.drawn(v, u), VertexId::NONE, [0.0; 3]);
-            if q > floor && q > 0.0 && best.is_none_or(|b| q > b.0) {
+            if let Some(q) = self.least_drawn(best.map_or(floor, |b| b.0), v, u) {
                 best = Some((q, u));
             }
         }

@@ -81,16 +81,33 @@ impl Solid {
         quality(tet.map(|v| self.at(v)))
     }
 
-    /// Least quality of tets, of which `v` is taken to be at `p`.
-    pub(super) fn least(&self, tets: &[[VertexId; 4]], v: VertexId, p: Vector) -> f64 {
+    /// Least quality of tets, of which `v` is taken to be at `p`, if it is more than `bound`. Most places fail on the same tet, so
+    /// the one that fails goes first.
+    pub(super) fn least_above(&self, bound: f64, tets: &mut [[VertexId; 4]], v: VertexId, p: Vector) -> Option<f64> {
         let mut least = f64::INFINITY;
-        for tet in tets {
-            least = least.min(quality(tet.map(|w| if w == v { p } else { self.at(w) })));
-            if least <= 0.0 {
-                break;
+        for k in 0..tets.len() {
+            least = least.min(quality(tets[k].map(|w| if w == v { p } else { self.at(w) })));
+            if least <= bound {
+                tets.swap(0, k);
+                return None;
             }
         }
-        least
+        Some(least)
+    }
+
+    /// Least quality of a star after drawing `v` onto `u`, if it is more than `bound`.
+    pub(super) fn least_drawn(&self, bound: f64, v: VertexId, u: VertexId) -> Option<f64> {
+        let mut least = f64::INFINITY;
+        for &t in &self.tets_at[v] {
+            let tet = self.tets[t];
+            if !tet.contains(&u) {
+                least = least.min(self.quality(tet.map(|w| if w == v { u } else { w })));
+                if least <= bound {
+                    return None;
+                }
+            }
+        }
+        Some(least)
     }
 
     pub(super) fn star(&self, v: VertexId) -> Vec<[VertexId; 4]> {
@@ -142,10 +159,10 @@ impl Solid {
         all
     }
 
-    /// Raises the least quality of tets by moving `v` from a place, with steps of at most a given length.
+    /// Raises the least quality of tets, which is `q`, by moving `v` from a place, with steps of at most a given length.
     pub(super) fn climb(
         &self,
-        tets: &[[VertexId; 4]],
+        tets: &mut [[VertexId; 4]],
         v: VertexId,
         (mut q, mut p, mut step): (f64, Vector, f64),
     ) -> Vector {
@@ -162,31 +179,28 @@ impl Solid {
             step /= 2.0;
             for _ in 0..3 {
                 let from = p;
-                let mut best = (q, p);
                 for d in DIRECTIONS {
                     for sign in [1.0, -1.0] {
                         let to = std::array::from_fn(|c| from[c] + sign * step * d[c]);
-                        let here = self.least(tets, v, to);
-                        if here > best.0 {
-                            best = (here, to);
+                        if let Some(here) = self.least_above(q, tets, v, to) {
+                            (q, p) = (here, to);
                         }
                     }
                 }
-                if best.1 == p {
+                if p == from {
                     break;
                 }
-                (q, p) = best;
             }
         }
         p
     }
 
     pub(super) fn smooth(&mut self, v: VertexId) {
-        let tets = self.star(v);
+        let mut tets = self.star(v);
         let reach =
             tets.iter().flatten().map(|&w| sub(self.at(w), self.at(v))).map(|d| dot(d, d)).fold(0.0, f64::max).sqrt();
         let p = self.at(v);
-        self.points[v] = self.climb(&tets, v, (self.least(&tets, v, p), p, reach));
+        self.points[v] = self.climb(&mut tets, v, (self.least_now(v), p, reach));
     }
 
     /// The tets, their points (the surface's first, then those still in use), and the least quality.

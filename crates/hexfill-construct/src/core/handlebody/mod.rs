@@ -1,4 +1,4 @@
-//! Tetrahedra of a handlebody without a mesher: cut along disks, cone the ball that is left (Erickson 2014, section 4, asks for
+//! Tetrahedra of a handlebody without a mesher: cut along disks, cone the ball that is left (Erickson 2014 asks for
 //! tetrahedra of the interior; this is one way to have them from topology alone).
 //!
 //! A surface of genus g in space whose interior is a handlebody has g loops that bound disks inside and together
