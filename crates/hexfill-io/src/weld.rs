@@ -115,7 +115,7 @@ pub fn closing_tolerance(data: &MeshData) -> Option<f64> {
         let root = merged(&points, tolerance);
         let number = |v: u32| open.binary_search(&v).map_or(v, |i| open[root[i] as usize]);
         let whole = |face: &&[u32]| (1..face.len()).all(|i| (0..i).all(|j| number(face[i]) != number(face[j])));
-        (open_edges(&faces, number).is_empty(), faces.iter().all(|f| whole(&f)))
+        (open_edges(&faces, number).is_empty(), faces.iter().all(whole))
     };
     let first = gaps.partition_point(|&gap| matches!(at(gap), (false, true)));
     let best = *gaps.get(first)?;

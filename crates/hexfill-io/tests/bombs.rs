@@ -44,10 +44,8 @@ fn every_reader_stops_at_what_is_unpacked() {
             let mut file = Vec::new();
             write_to_with(&mut file, format, &common::chiral_for(format), encoding).unwrap();
             // Cut in the middle, so that readers ask for more: a line without an end, or many of them.
-            for filler in &fillers {
-                let bomb = gzip_bomb(&file[..file.len() / 2], filler);
-                refused(format, &bomb);
-            }
+            let filler = &fillers[usize::from(encoding == Encoding::Text && format.holds_cells())];
+            refused(format, &gzip_bomb(&file[..file.len() / 2], filler));
         }
     }
 }
