@@ -36,6 +36,7 @@ class Filling(TypedDict):
 
     strategy: str
     prefer: str
+    effort: str
     layers: int | None
     layer_height: float | None
     growth: float

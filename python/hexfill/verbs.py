@@ -52,6 +52,7 @@ def fill(
     *,
     strategy: Literal["auto", "shell", "atlas", "construct"] = "auto",
     prefer: Literal["balance", "hexes", "quality"] = "balance",
+    effort: Literal["fast", "normal", "best"] = "normal",
     layers: int | None = None,
     layer_height: float | None = None,
     growth: float = 1.0,
@@ -78,6 +79,8 @@ def fill(
     prefer : "balance", "hexes", "quality"
         Among certified meshes of a worst scaled Jacobian of at least 0.2: fewest hexes by the cube of the worst scaled Jacobian,
         fewest hexes, or the largest worst scaled Jacobian.
+    effort : "fast", "normal", "best"
+        The first certified mesh; until one is good; or more candidates though one is good already, many times the time.
     layers : int, optional
         So many layers of hexes, 1 to 1000, under the whole surface: boundary layers for flow.
     layer_height : float, optional
@@ -128,6 +131,7 @@ def fill(
     options: _given.Filling = {
         "strategy": strategy,
         "prefer": prefer,
+        "effort": effort,
         "layers": None if layers is None else arrays.whole(layers, "layers", 1, 1000),
         "layer_height": None if layer_height is None else arrays.real(layer_height, "layer_height"),
         "growth": arrays.real(growth, "growth"),

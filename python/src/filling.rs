@@ -9,8 +9,8 @@ use hexfill::construct::CellChoice;
 use hexfill::embed::{Objective, Options};
 use hexfill::io::MeshData;
 use hexfill::{
-    BoundaryLayers, Collapse, Context, FillOptions, FillReport, PlaceOptions, Placed, Prefer, Problem, SimplifyOptions,
-    Strategy,
+    BoundaryLayers, Collapse, Context, Effort, FillOptions, FillReport, PlaceOptions, Placed, Prefer, Problem,
+    SimplifyOptions, Strategy,
 };
 use pyo3::prelude::*;
 use serde_json::{Value, json};
@@ -25,6 +25,7 @@ type Made = (Data, String, bool);
 pub(crate) struct Filling {
     strategy: String,
     prefer: String,
+    effort: String,
     layers: Option<u32>,
     layer_height: Option<f64>,
     growth: f64,
@@ -44,6 +45,7 @@ impl Filling {
             ("construct", Strategy::Construct),
         ];
         let preferences = [("balance", Prefer::Balance), ("hexes", Prefer::Hexes), ("quality", Prefer::Quality)];
+        let efforts = [("fast", Effort::Fast), ("normal", Effort::Normal), ("best", Effort::Best)];
         // As on the command line: what is not embedded is made as small as the time allows.
         let simplify = self.simplify || !self.embed && has_limit;
         let balls = if has_limit { u64::MAX } else { SIMPLIFY_BALLS };
@@ -51,6 +53,7 @@ impl Filling {
         Ok(FillOptions {
             strategy: choice("strategy", &self.strategy, &strategies)?,
             prefer: choice("prefer", &self.prefer, &preferences)?,
+            effort: choice("effort", &self.effort, &efforts)?,
             max_hexes: self.max_hexes.unwrap_or(u32::MAX),
             count: self.best_of,
             cells: if self.embed { CellChoice::Embeddable } else { CellChoice::Fewest },

@@ -171,6 +171,7 @@ def test_meshes_that_are_none(cube):
         {"time_limit": math.nan},
         {"strategy": "magic"},
         {"prefer": "beauty"},
+        {"effort": "none"},
         {"layers": 0},
         {"layers": 2, "layer_height": 0},
         {"layers": 2, "layer_height": math.inf},

@@ -24,6 +24,7 @@ def test_options_of_fill(bar):
     layered = hexfill.fill(*bar, layers=2, layer_height=0.1, growth=1.5)
     assert layered.certified and layered.n_hexes > 40
     assert hexfill.fill(*bar, strategy="construct", embed=False).certified is None
+    assert hexfill.fill(*bar, effort="fast").certified and hexfill.fill(*bar, effort="best").certified
     with pytest.raises(hexfill.NoMeshFound) as caught:
         hexfill.fill(":geode", max_hexes=3, strategy="shell")
     assert caught.value.stopped == "finished"
@@ -102,18 +103,15 @@ def test_files(tmp_path, bar):
     mesh = hexfill.fill(hexfill.Surface(*bar, quad_tags=np.arange(len(bar[1]), dtype=np.uint8)))
     for name in ("bar.vtk", "bar.vtu.gz", "bar.mesh", "bar.json"):
         path = tmp_path / name
-        if name in ("bar.mesh", "bar.json"):
-            with pytest.warns(UserWarning, match="does not carry data on hexes"):
-                mesh.write(path)
-        else:
-            mesh.write(path)
+        mesh.write(path)
         back = hexfill.read(path)
         assert back.points.tobytes() == mesh.points.tobytes() and (back.hexes == mesh.hexes).all(), name
         assert (back.quad_tags == mesh.quad_tags).all(), name
     assert isinstance(hexfill.read(":cube"), hexfill.Surface)
     with pytest.raises(hexfill.FileError, match="cannot hold"):
         mesh.write(tmp_path / "bar.obj")
-    mesh.surface.write(tmp_path / "bar.obj", format="obj")
+    with pytest.warns(UserWarning, match="does not carry tags of quads"):
+        mesh.surface.write(tmp_path / "bar.surface", format="off")
     (tmp_path / "bad.off").write_text("OFF\n4 1 0\n0 0 zero\n")
     with pytest.raises(hexfill.FileError) as caught:
         hexfill.read(tmp_path / "bad.off")
