@@ -61,8 +61,10 @@ impl Context<'_> {
     /// This context with a deadline `limit` from now (the earlier one wins).
     #[must_use]
     pub fn with_time_limit(mut self, limit: Duration) -> Self {
-        let at = Instant::now() + limit;
-        self.deadline = Some(self.deadline.map_or(at, |old| old.min(at)));
+        // A limit beyond what clocks can say is none.
+        if let Some(at) = Instant::now().checked_add(limit) {
+            self.deadline = Some(self.deadline.map_or(at, |old| old.min(at)));
+        }
         self
     }
 

@@ -46,7 +46,7 @@ pub use hexfill_shell::{BoundaryLayers, ShellOptions};
 pub use limits::{LimitsInfo, Named};
 pub use placed_fill::{PlaceOptions, PlacedFill, fill_placed};
 pub use problem::{Problem, ProblemError, is_named};
-pub use regions::{FilledRegions, Region, RegionsError, fill_regions, regions};
+pub use regions::{FilledRegions, Region, RegionsError, fill_regions, has_regions, regions};
 pub use simplify::{SimplifiedData, SimplifyError, default_balls, simplify};
 pub use threads::{MAX_THREADS, ThreadsError, with_threads};
 pub use {

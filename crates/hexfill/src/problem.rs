@@ -65,6 +65,18 @@ pub enum ProblemError {
         /// Points that are no corners.
         points: usize,
     },
+    /// Ids that only a huge table could hold.
+    #[error(
+        "{name}: the largest vertex id is {largest}, with {faces} faces; number the vertices from 0 without large gaps"
+    )]
+    SparseIds {
+        /// The input.
+        name: String,
+        /// The largest id.
+        largest: usize,
+        /// Number of faces.
+        faces: usize,
+    },
     /// The file has no faces at all.
     #[error("{name} has no faces{}; give a closed surface of quads", if *hexes > 0 { format!(" ({hexes} hexes: is it a mesh? then use `hexfill check`)") } else { String::new() })]
     NoFaces {
@@ -96,6 +108,9 @@ pub enum ProblemError {
         points: Offenders<hexfill_mesh::VertexId>,
     },
 }
+
+/// Without coordinates so many ids may be unused: tables are as long as the largest id.
+const MOST_UNUSED: usize = 1 << 20;
 
 /// Whether a word names a problem without being a file: `:name` or a surface signature.
 pub fn is_named(spec: &str) -> bool {
@@ -160,6 +175,13 @@ impl Problem {
         } else {
             data.quads.iter().flatten().map(|&v| v as usize + 1).max().unwrap_or(0)
         };
+        if !data.has_coordinates && n_vertices > MOST_UNUSED + 4 * data.quads.len() {
+            return Err(ProblemError::SparseIds {
+                name: name.to_owned(),
+                largest: n_vertices - 1,
+                faces: data.quads.len(),
+            });
+        }
         let mut surface = match QuadSurface::try_new(n_vertices, &data.quads) {
             Ok(surface) => surface,
             Err(source @ SurfaceError::Open { .. }) => {

@@ -75,6 +75,15 @@ pub enum RegionsError {
     },
 }
 
+/// Whether a file may hold several regions, or hexes with a void: edges with more than two faces, or hexes.
+pub fn has_regions(data: &MeshData) -> bool {
+    let is_walled = || {
+        let surface = hexfill_mesh::QuadSurface::try_new(data.points.len(), &data.quads);
+        matches!(surface, Err(hexfill_mesh::SurfaceError::NonManifoldEdges { .. }))
+    };
+    data.has_coordinates && data.other_faces.is_empty() && (!data.hexes.is_empty() || is_walled())
+}
+
 /// The regions bounded by the faces of a file, and by the boundary of its hexes, that no hexes fill; ordered by their first face. Empty without
 /// positions.
 ///
@@ -86,14 +95,16 @@ pub fn regions(name: &str, data: &MeshData) -> Result<Vec<Region>, RegionsError>
         return Ok(Vec::new());
     }
     let shells = shells(name, &walls, &data.points)?;
-    let of_shell: Vec<Vec<[u32; 4]>> = shells.iter().map(|sides| sides.iter().map(|&s| outward(&walls, s)).collect()).collect();
+    let of_shell: Vec<Vec<[u32; 4]>> =
+        shells.iter().map(|sides| sides.iter().map(|&s| outward(&walls, s)).collect()).collect();
     let at = |quad: [u32; 4]| quad.map(|v| data.points[v as usize]);
     let volume = |quads: &[[u32; 4]]| {
         let origin = data.points[quads[0][0] as usize];
         quads.iter().map(|q| cone(at(*q).map(|p| sub(p, origin)))).sum::<f64>()
     };
     let volumes: Vec<f64> = of_shell.iter().map(|quads| volume(quads)).collect();
-    let triangles: Vec<Vec<[Vector; 3]>> = of_shell.iter().map(|quads| quads.iter().flat_map(|q| halves(at(*q))).collect()).collect();
+    let triangles: Vec<Vec<[Vector; 3]>> =
+        of_shell.iter().map(|quads| quads.iter().flat_map(|q| halves(at(*q))).collect()).collect();
     let holders = if shells.len() > 2 { holders(&triangles) } else { vec![Vec::new(); shells.len()] };
     let mut parts: BTreeMap<usize, Vec<usize>> =
         (0..shells.len()).filter(|&i| volumes[i] > 0.0).map(|i| (i, vec![i])).collect();
@@ -179,11 +190,8 @@ fn shells(name: &str, walls: &[[u32; 4]], points: &[Vector]) -> Result<Vec<Vec<u
             edges.entry([a.min(b), a.max(b)]).or_default().push((q, a < b));
         }
     }
-    let open: Offenders<Edge> = edges
-        .iter()
-        .filter(|(_, quads)| quads.len() < 2)
-        .map(|(&[a, b], _)| Edge(VertexId(a), VertexId(b)))
-        .collect();
+    let open: Offenders<Edge> =
+        edges.iter().filter(|(_, quads)| quads.len() < 2).map(|(&[a, b], _)| Edge(VertexId(a), VertexId(b))).collect();
     if !open.is_empty() {
         return Err(RegionsError::Open { name: name.to_owned(), edges: open });
     }
@@ -259,13 +267,16 @@ impl FilledRegions {
 
     /// Whether det J > 0 is certified in every hex that was made.
     pub fn is_certified(&self) -> bool {
-        let placed = |fill: &PlacedFill| fill.meshes.first().is_some_and(|(_, p)| p.as_ref().is_some_and(crate::Placed::is_certified));
+        let placed = |fill: &PlacedFill| {
+            fill.meshes.first().is_some_and(|(_, p)| p.as_ref().is_some_and(crate::Placed::is_certified))
+        };
         self.fills.iter().all(placed)
     }
 
     /// The least certified scaled Jacobian; -1 if a hex is not certified.
     pub fn worst(&self) -> f64 {
-        let of = |fill: &PlacedFill| fill.meshes.first().and_then(|(_, p)| p.as_ref()).map_or(-1.0, crate::Placed::worst);
+        let of =
+            |fill: &PlacedFill| fill.meshes.first().and_then(|(_, p)| p.as_ref()).map_or(-1.0, crate::Placed::worst);
         self.fills.iter().map(of).fold(f64::INFINITY, f64::min)
     }
 
@@ -431,7 +442,9 @@ mod tests {
         // Fill a box, take hexes out of its middle, and fill the void.
         let whole = filled(&boxes(&[([0, 0, 0], [4, 4, 4])]), 1);
         let mut holed = whole.data.clone();
-        let centre = |hex: &[u32; 8]| [0, 1, 2].map(|k: usize| hex.iter().map(|&v| whole.data.points[v as usize][k]).sum::<f64>() / 8.0);
+        let centre = |hex: &[u32; 8]| {
+            [0, 1, 2].map(|k: usize| hex.iter().map(|&v| whole.data.points[v as usize][k]).sum::<f64>() / 8.0)
+        };
         holed.hexes.retain(|hex| !centre(hex).iter().all(|&x| x > 1.0 && x < 3.0));
         holed.hex_data.clear();
         assert_eq!(holed.hexes.len(), 56);

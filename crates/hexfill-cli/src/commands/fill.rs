@@ -1,5 +1,6 @@
 //! `hexfill fill SURFACE -o MESH`: the main job.
 
+use crate::commands::fill_regions;
 use crate::commands::view::Shown;
 use crate::console::Console;
 use crate::exit::Exit;
@@ -21,21 +22,21 @@ use std::time::{Duration, Instant};
 #[derive(clap::Args)]
 pub struct FillArgs {
     /// The surface: a file, `-`, a catalogue name such as :schneiders-pyramid, or a signature.
-    surface: String,
+    pub(super) surface: String,
     /// The mesh to write; format by extension; `-` for stdout. With --count the files are numbered OUT-1, OUT-2, ...
     #[arg(short, long, value_name = "OUT")]
-    output: Option<String>,
+    pub(super) output: Option<String>,
     #[command(flatten)]
     reading: files::InputArgs,
     /// Format of the mesh.
     #[arg(long, value_name = "FORMAT", value_parser = files::parse_format)]
-    to: Option<Format>,
+    pub(super) to: Option<Format>,
     /// Also write an HTML page that shows the mesh.
     #[arg(long, value_name = "FILE")]
-    view: Option<String>,
+    pub(super) view: Option<String>,
     /// Also write a PNG picture of the mesh.
     #[arg(long, value_name = "FILE")]
-    picture: Option<String>,
+    pub(super) picture: Option<String>,
     /// How to fill.
     #[arg(long, value_enum, default_value = "auto")]
     strategy: StrategyArg,
@@ -62,11 +63,11 @@ pub struct FillArgs {
     max_hexes: Option<u32>,
     /// Look for this many meshes that are not isomorphic.
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=10_000))]
-    count: u64,
+    pub(super) count: u64,
     /// Look for this many meshes that are not isomorphic, embed them, and write the one with the largest worst scaled Jacobian.
     /// See also --max-hexes and --beam.
     #[arg(long, value_name = "N", conflicts_with_all = ["count", "no_embed"], value_parser = clap::value_parser!(u64).range(2..=10_000))]
-    best_of: Option<u64>,
+    pub(super) best_of: Option<u64>,
     /// Look on for smaller meshes until --time-limit.
     #[arg(long, requires = "time_limit")]
     improve: bool,
@@ -88,10 +89,10 @@ pub struct FillArgs {
     beam: u64,
     /// A tetrahedral mesh of the inside, for surfaces that are not spheres (boundary: the quads cut along diagonals).
     #[arg(long, value_name = "FILE", conflicts_with = "tetgen")]
-    tets: Option<String>,
+    pub(super) tets: Option<String>,
     /// Call this TetGen program for the inside of surfaces that are not spheres.
     #[arg(long, value_name = "PROGRAM", num_args = 0..=1, default_missing_value = "tetgen")]
-    tetgen: Option<PathBuf>,
+    pub(super) tetgen: Option<PathBuf>,
     /// Which cells the construction uses: those that embed, or those with the fewest hexes [default: fewest with --no-embed,
     /// else embeddable].
     #[arg(long, value_enum)]
@@ -101,13 +102,13 @@ pub struct FillArgs {
     simplify: bool,
     /// Do not embed: interior vertices get start positions, and geometry is not judged.
     #[arg(long)]
-    no_embed: bool,
+    pub(super) no_embed: bool,
     /// How long the embedding of one mesh, or of all with --best-of, may take [default: as long as its bounded work takes].
     #[arg(long, value_name = "TIME", value_parser = files::parse_duration)]
     embed_limit: Option<Duration>,
     /// Write nothing unless det J > 0 is certified in every hex.
     #[arg(long, conflicts_with = "no_embed")]
-    require_valid: bool,
+    pub(super) require_valid: bool,
     /// States kept per class while growing towards the surface.
     #[arg(long, default_value_t = 1, value_name = "N")]
     width: u32,
@@ -144,12 +145,12 @@ enum CellsArg {
 }
 
 #[derive(Serialize)]
-struct MeshOutput {
+pub(super) struct MeshOutput {
     #[serde(flatten)]
-    report: FillReport,
+    pub(super) report: FillReport,
     /// Absent without positions.
-    geometry: Option<GeometryReport>,
-    files: Vec<String>,
+    pub(super) geometry: Option<GeometryReport>,
+    pub(super) files: Vec<String>,
 }
 
 #[derive(Serialize)]
@@ -169,7 +170,10 @@ struct Output {
 pub fn run(args: &FillArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
     let start = Instant::now();
     check_files(args, console)?;
-    let mut problem = files::load_problem(&args.surface, &args.reading)?;
+    let mut problem = match input(args)? {
+        Input::Surface(problem) => *problem,
+        Input::Regions(data, regions) => return fill_regions::run(args, &data, &regions, console, ctx),
+    };
     problem.notes.extend(crossing_note(&problem));
     for note in &problem.notes {
         console.note(note);
@@ -179,10 +183,7 @@ pub fn run(args: &FillArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Res
     }
     let own_log = args.growth_log.is_none().then(|| default_log(args)).flatten();
     let options = fill_options(args, own_log.clone(), ctx)?;
-    let mut how = PlaceOptions::default();
-    how.embed = (!args.no_embed).then(hexfill::embed::Options::default);
-    how.best = args.best_of.is_some();
-    how.limit = args.embed_limit;
+    let how = place_options(args);
     let result = hexfill::fill_placed(&problem, &options, &how, ctx)?;
     let mut output = Output {
         meshes: Vec::new(),
@@ -228,6 +229,35 @@ pub fn run(args: &FillArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Res
         say(&output, args, console);
     }
     Ok(exit)
+}
+
+/// One surface, or several regions at once.
+enum Input {
+    Surface(Box<Problem>),
+    Regions(Box<MeshData>, Vec<hexfill::Region>),
+}
+
+fn input(args: &FillArgs) -> anyhow::Result<Input> {
+    if hexfill::is_named(&args.surface) {
+        return Ok(Input::Surface(Box::new(files::load_problem(&args.surface, &args.reading)?)));
+    }
+    let name = if args.surface == "-" { "stdin" } else { &args.surface };
+    let data = files::read_data(&args.surface, &args.reading)?;
+    if hexfill::has_regions(&data) {
+        let regions = hexfill::regions(name, &data)?;
+        if !regions.is_empty() {
+            return Ok(Input::Regions(Box::new(data), regions));
+        }
+    }
+    Ok(Input::Surface(Box::new(Problem::from_data(name, &data)?)))
+}
+
+pub(super) fn place_options(args: &FillArgs) -> PlaceOptions {
+    let mut how = PlaceOptions::default();
+    how.embed = (!args.no_embed).then(hexfill::embed::Options::default);
+    how.best = args.best_of.is_some();
+    how.limit = args.embed_limit;
+    how
 }
 
 /// A word on quads that cross: work on them is in vain.
@@ -277,7 +307,11 @@ fn boundary_data(problem: &Problem) -> MeshData {
 }
 
 /// What the flags mean.
-fn fill_options(args: &FillArgs, own_log: Option<PathBuf>, ctx: &Context<'_>) -> anyhow::Result<FillOptions> {
+pub(super) fn fill_options(
+    args: &FillArgs,
+    own_log: Option<PathBuf>,
+    ctx: &Context<'_>,
+) -> anyhow::Result<FillOptions> {
     Ok(FillOptions {
         strategy: match args.strategy {
             StrategyArg::Auto => Strategy::Auto,
@@ -420,37 +454,7 @@ fn write_mesh(
 /// The report for a person.
 fn say(output: &Output, args: &FillArgs, console: &Console) {
     for mesh in &output.meshes {
-        let r = &mesh.report;
-        console.say(format!(
-            "{}: {} quads filled with {} hex{} ({:.1} per quad), {} interior vertices{}, by {}",
-            r.surface,
-            r.quads,
-            r.hexes,
-            if r.hexes == 1 { "" } else { "es" },
-            r.hexes_per_quad,
-            r.interior_vertices,
-            r.sheets.map_or(String::new(), |n| format!(", {n} sheets")),
-            r.route.words(),
-        ));
-        if r.stages.len() > 1 {
-            let stages: Vec<String> = r.stages.iter().map(|(stage, n)| format!("{n} {stage}")).collect();
-            console.say(format!("hexes by step: {}", stages.join(", ")));
-        }
-        console.say("connectivity: judged proper, boundary = surface (L1-L3)");
-        match &mesh.geometry {
-            Some(geometry) => {
-                console.say(format!("geometry: {geometry}"));
-                if let Some(line) = geometry.distribution().filter(|_| geometry.hexes > 1) {
-                    console.say(format!("scaled Jacobians: {line}"));
-                }
-                if geometry.ways > 1 {
-                    let ways = geometry.ways;
-                    console
-                        .say(format!("lies on the surface in {ways} ways that are not congruent; the best was kept"));
-                }
-            }
-            None => console.say("geometry: none, the surface has no coordinates"),
-        }
+        say_mesh(mesh, console);
         if !mesh.files.is_empty() {
             console.say(format!("written: {}", mesh.files.join(", ")));
         } else if args.require_valid {
@@ -469,6 +473,40 @@ fn say(output: &Output, args: &FillArgs, console: &Console) {
         console.say(format!("stopped early ({}); a longer run may bring a better mesh", output.stopped));
     }
     console.say(format!("{:.2} s", output.seconds));
+}
+
+/// The lines about one mesh.
+pub(super) fn say_mesh(mesh: &MeshOutput, console: &Console) {
+    let r = &mesh.report;
+    console.say(format!(
+        "{}: {} quads filled with {} hex{} ({:.1} per quad), {} interior vertices{}, by {}",
+        r.surface,
+        r.quads,
+        r.hexes,
+        if r.hexes == 1 { "" } else { "es" },
+        r.hexes_per_quad,
+        r.interior_vertices,
+        r.sheets.map_or(String::new(), |n| format!(", {n} sheets")),
+        r.route.words(),
+    ));
+    if r.stages.len() > 1 {
+        let stages: Vec<String> = r.stages.iter().map(|(stage, n)| format!("{n} {stage}")).collect();
+        console.say(format!("hexes by step: {}", stages.join(", ")));
+    }
+    console.say("connectivity: judged proper, boundary = surface (L1-L3)");
+    match &mesh.geometry {
+        Some(geometry) => {
+            console.say(format!("geometry: {geometry}"));
+            if let Some(line) = geometry.distribution().filter(|_| geometry.hexes > 1) {
+                console.say(format!("scaled Jacobians: {line}"));
+            }
+            if geometry.ways > 1 {
+                let ways = geometry.ways;
+                console.say(format!("lies on the surface in {ways} ways that are not congruent; the best was kept"));
+            }
+        }
+        None => console.say("geometry: none, the surface has no coordinates"),
+    }
 }
 
 /// `mesh.vtk` and 2 -> `mesh-2.vtk`; `mesh.vtk.gz` -> `mesh-2.vtk.gz`.

@@ -9,6 +9,7 @@ pub mod doctor;
 pub mod embed;
 pub mod enumerate;
 pub mod fill;
+mod fill_regions;
 pub mod info;
 pub mod simplify;
 pub mod view;
