@@ -27,6 +27,7 @@ mod placed_fill;
 mod placement;
 mod problem;
 mod regions;
+mod scale;
 mod simplify;
 mod stored;
 mod threads;

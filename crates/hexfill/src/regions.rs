@@ -8,6 +8,7 @@ use crate::choose::GOOD;
 use crate::fill::{FillError, FillOptions};
 use crate::placed_fill::{PlaceOptions, PlacedFill, fill_placed};
 use crate::problem::{Problem, ProblemError};
+use crate::scale::at_ordinary_size;
 use hexfill_check::{Judged, Level, judge};
 use hexfill_geometry::{Vector, cone, cross, direction, dot, halves, holders, midpoint, sub};
 use hexfill_io::MeshData;
@@ -94,12 +95,13 @@ pub fn regions(name: &str, data: &MeshData) -> Result<Vec<Region>, RegionsError>
     if !data.has_coordinates || walls.is_empty() {
         return Ok(Vec::new());
     }
-    let shells = shells(name, &walls, &data.points)?;
+    let points = at_ordinary_size(&data.points);
+    let shells = shells(name, &walls, &points)?;
     let of_shell: Vec<Vec<[u32; 4]>> =
         shells.iter().map(|sides| sides.iter().map(|&s| outward(&walls, s)).collect()).collect();
-    let at = |quad: [u32; 4]| quad.map(|v| data.points[v as usize]);
+    let at = |quad: [u32; 4]| quad.map(|v| points[v as usize]);
     let volume = |quads: &[[u32; 4]]| {
-        let origin = data.points[quads[0][0] as usize];
+        let origin = points[quads[0][0] as usize];
         quads.iter().map(|q| cone(at(*q).map(|p| sub(p, origin)))).sum::<f64>()
     };
     let volumes: Vec<f64> = of_shell.iter().map(|quads| volume(quads)).collect();
