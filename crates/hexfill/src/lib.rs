@@ -20,6 +20,7 @@ mod doctor;
 mod effort;
 mod fill;
 mod geometry;
+mod hopeless;
 mod last_resort;
 mod limits;
 mod no_room;
