@@ -41,3 +41,7 @@ tests/python.sh
 
 step "the README's main command"
 python3 tests/readme.py
+
+step "hostile surfaces"
+cargo build -p hexfill-cli --locked
+python3 tests/hostile.py target/debug/hexfill --quick --count 44 --out target/hostile

@@ -53,7 +53,9 @@ pub(crate) fn linking(s: &Darts, points: &[Vector], ctx: &Context<'_>) -> Result
     let at = |v: VertexId| points[v.index()];
     let mut pushed: Vec<Vec<Vector>> = Vec::new();
     for l in &loops {
-        pushed.push(push(s, points, l).ok_or(failed("a face has no normal"))?);
+        pushed.push(push(s, points, l).ok_or(failed(
+            "the corners of a face lie on a line, so that the positions do not tell the inside; see `hexfill doctor`",
+        ))?);
     }
     let mut numbers = vec![vec![0i64; loops.len()]; loops.len()];
     for (i, l) in loops.iter().enumerate() {
