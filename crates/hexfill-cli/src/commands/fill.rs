@@ -429,7 +429,7 @@ fn write_mesh(
     }
     let Some(placed) = placed else { bail!("no positions to draw: the surface has none") };
     let shown = Shown {
-        title: &problem.name,
+        title: files::short_name(&problem.name),
         points: &placed.points,
         mesh: &filled.mesh,
         scaled_jacobians: (!args.no_embed).then(|| placed.scaled_jacobians()),
