@@ -11,6 +11,7 @@
 mod chord_drawing;
 mod circle_packing;
 mod colour;
+mod gallery;
 mod page;
 mod picture;
 mod raster;
@@ -19,6 +20,7 @@ use hexfill_mesh::{HexId, HexMesh};
 use std::io::{self, Write};
 
 pub use chord_drawing::{ChordDrawing, DrawingError, MOST_QUADS, chord_drawing, chord_thumbnail};
+pub use gallery::{GalleryItem, gallery};
 pub use picture::{Panels, Picture, png, png_with};
 
 /// What is shown.
