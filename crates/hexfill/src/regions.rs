@@ -123,7 +123,7 @@ pub fn regions(name: &str, data: &MeshData) -> Result<Vec<Region>, RegionsError>
             continue;
         }
         let baffles: Offenders<QuadId> =
-            sides.iter().filter(|s| **s % 2 == 0 && sides.contains(&(**s ^ 1))).map(|s| QuadId(s / 2)).collect();
+            sides.iter().filter(|s| s.is_multiple_of(2) && sides.contains(&(**s ^ 1))).map(|s| QuadId(s / 2)).collect();
         if !baffles.is_empty() {
             return Err(RegionsError::Baffle { name: name.to_owned(), quads: baffles });
         }
@@ -177,7 +177,7 @@ fn walls(data: &MeshData) -> (Vec<[u32; 4]>, Vec<bool>) {
 /// The quad of a side, facing out of the region on that side.
 fn outward(walls: &[[u32; 4]], side: u32) -> [u32; 4] {
     let [a, b, c, d] = walls[side as usize / 2];
-    if side % 2 == 0 { [a, d, c, b] } else { [a, b, c, d] }
+    if side.is_multiple_of(2) { [a, d, c, b] } else { [a, b, c, d] }
 }
 
 /// The sides that belong together, each shell ascending.
