@@ -44,12 +44,17 @@ pub enum RegionsError {
     #[error(transparent)]
     Problem(#[from] ProblemError),
     /// An edge of one face only.
-    #[error("{name}: a wall ends in {} edges: {edges}; walls must close up", edges.count)]
+    #[error(
+        "{name}: {} non-manifold edges, each in three or more quads: {shared}; they could be walls between regions, but walls end at {} edges: {edges}; close the walls, or split the surface",
+        shared.count, edges.count
+    )]
     Open {
         /// The input.
         name: String,
-        /// The edges.
+        /// The edges of one face.
         edges: Offenders<Edge>,
+        /// The edges of more than two.
+        shared: Offenders<Edge>,
     },
     /// A face with the same region on both sides.
     #[error("{name}: {} faces have the same region on both sides: {quads}; remove them, or close the walls they belong to", quads.count)]
@@ -190,10 +195,13 @@ fn shells(name: &str, walls: &[[u32; 4]], points: &[Vector]) -> Result<Vec<Vec<u
             edges.entry([a.min(b), a.max(b)]).or_default().push((q, a < b));
         }
     }
-    let open: Offenders<Edge> =
-        edges.iter().filter(|(_, quads)| quads.len() < 2).map(|(&[a, b], _)| Edge(VertexId(a), VertexId(b))).collect();
+    let with = |is_one: fn(usize) -> bool| -> Offenders<Edge> {
+        let of = edges.iter().filter(|(_, quads)| is_one(quads.len()));
+        of.map(|(&[a, b], _)| Edge(VertexId(a), VertexId(b))).collect()
+    };
+    let open = with(|n| n < 2);
     if !open.is_empty() {
-        return Err(RegionsError::Open { name: name.to_owned(), edges: open });
+        return Err(RegionsError::Open { name: name.to_owned(), edges: open, shared: with(|n| n > 2) });
     }
     let mut forest: Forest<Side> = Forest::new(2 * walls.len());
     for (&[a, b], quads) in &edges {
