@@ -45,7 +45,8 @@ fn a_void_is_filled_and_the_hexes_of_the_file_stay() {
     let (_, out, _) = hexfill(dir.path(), &["convert", &three(), "-o", "walls.json", "--json"]);
     assert!(!out.is_empty());
     let walls = json(&std::fs::read_to_string(dir.path().join("walls.json")).unwrap());
-    let walled = serde_json::json!({ "points": data["points"], "hexes": notched, "boundary_quads": walls["boundary_quads"] });
+    let walled =
+        serde_json::json!({ "points": data["points"], "hexes": notched, "boundary_quads": walls["boundary_quads"] });
     std::fs::write(dir.path().join("walled.json"), walled.to_string()).unwrap();
     let (code, out, err) = hexfill(dir.path(), &["fill", "walled.json", "-o", "again.json", "--json"]);
     assert_eq!(code, 0, "{err}");

@@ -420,9 +420,8 @@ mod tests {
     fn filled(data: &MeshData, n: usize) -> FilledRegions {
         let found = regions("boxes", data).unwrap();
         assert_eq!(found.len(), n);
-        let mut how = PlaceOptions::default();
-        how.embed = Some(hexfill_embed::Options::default());
-        let filled = fill_regions(data, &found, &FillOptions::default(), &how, &Context::default()).unwrap();
+        let (options, how) = (FillOptions::default(), PlaceOptions::default());
+        let filled = fill_regions(data, &found, &options, &how, &Context::default()).unwrap();
         assert!(filled.is_complete() && filled.is_certified(), "{}", filled.worst());
         assert_eq!(filled.data.points[..data.points.len()], data.points[..]);
         filled

@@ -253,11 +253,8 @@ fn input(args: &FillArgs) -> anyhow::Result<Input> {
 }
 
 pub(super) fn place_options(args: &FillArgs) -> PlaceOptions {
-    let mut how = PlaceOptions::default();
-    how.embed = (!args.no_embed).then(hexfill::embed::Options::default);
-    how.best = args.best_of.is_some();
-    how.limit = args.embed_limit;
-    how
+    let embed = (!args.no_embed).then(hexfill::embed::Options::default);
+    PlaceOptions { embed, best: args.best_of.is_some(), limit: args.embed_limit }
 }
 
 /// A word on quads that cross: work on them is in vain.
