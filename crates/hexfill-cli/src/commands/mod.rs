@@ -11,5 +11,6 @@ pub mod enumerate;
 pub mod fill;
 mod fill_regions;
 pub mod info;
+pub mod man;
 pub mod simplify;
 pub mod view;
