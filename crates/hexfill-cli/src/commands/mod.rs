@@ -12,5 +12,6 @@ pub mod fill;
 mod fill_regions;
 pub mod gallery;
 pub mod info;
+pub mod man;
 pub mod simplify;
 pub mod view;
