@@ -7,6 +7,7 @@
 use crate::effort::{Budget, Effort};
 use crate::fill::{FillError, FillOptions, FillResult, Filled, Route, Strategy, construct, search, shelled, verify};
 use crate::geometry::{Placed, place, place_as_it_is, place_best, place_points};
+use crate::hopeless::{Hopeless, hopeless};
 use crate::last_resort::{LastResort, leaving_time};
 use crate::no_room::no_room;
 use crate::placed_fill::{PlaceOptions, PlacedFill};
@@ -80,8 +81,20 @@ pub(crate) fn fill_best(
     let result = FillResult { meshes: Vec::new(), stop: StopReason::Finished, tried: Vec::new() };
     let early = leaving_time(problem, options, ctx);
     let budget = options.effort.budget(&options.shell);
-    let mut trial =
-        Trial { problem, options, boundary, how, ctx, early, embed, budget, result, best: None, seen: Vec::new() };
+    let mut trial = Trial {
+        problem,
+        options,
+        boundary,
+        how,
+        ctx,
+        early,
+        embed,
+        budget,
+        result,
+        best: None,
+        seen: Vec::new(),
+        hopeless: None,
+    };
     trial.look_up()?;
     trial.shell()?;
     let why_none = trial.go_on()?;
@@ -107,6 +120,8 @@ struct Trial<'a> {
     best: Option<(Rank, Filled, Placed)>,
     /// The meshes considered, in words.
     seen: Vec<String>,
+    /// Why no work is spent beyond the first trials, once that was asked.
+    hopeless: Option<Option<Hopeless>>,
 }
 
 impl<'a> Trial<'a> {
@@ -150,7 +165,11 @@ impl<'a> Trial<'a> {
         if self.options.strategy != Strategy::Auto || self.is_enough() || self.ctx.stop().is_some() {
             return Ok(None);
         }
-        let why_none = no_room(&self.problem.surface, self.boundary);
+        let none_valid = no_room(&self.problem.surface, self.boundary).map(|why| format!("none can be valid: {why}"));
+        let why_none = none_valid.or_else(|| match self.hopeless() {
+            Some(Hopeless::Crosses(why)) => Some(format!("{why} (--best goes on all the same)")),
+            _ => None,
+        });
         if self.is_small() && why_none.is_none() {
             if self.class() != Some(1) || self.budget.enough.is_none() {
                 self.flip_inward(self.options.inward_cavities.min(self.budget.cavities))?;
@@ -206,6 +225,15 @@ impl<'a> Trial<'a> {
             Some((filled, placed)) if placed.is_certified() => self.consider(filled),
             _ => Ok(()),
         }
+    }
+
+    /// Why the surface is not worth more than one trial of each mesh, asked where none is valid yet.
+    fn hopeless(&mut self) -> Option<Hopeless> {
+        if self.options.effort == Effort::Best || !matches!(self.class(), None | Some(2)) {
+            return None;
+        }
+        let (problem, boundary) = (self.problem, self.boundary);
+        self.hopeless.get_or_insert_with(|| hopeless(problem, boundary)).clone()
     }
 
     fn is_small(&self) -> bool {
@@ -269,6 +297,10 @@ impl<'a> Trial<'a> {
         } else {
             let mut how = *self.embed;
             how.programs = how.programs.min(self.budget.others.unwrap_or(usize::MAX));
+            let is_late = self.best.is_some() || filled.route == Route::Construction;
+            if how.starts == 0 && is_late && self.hopeless().is_some() {
+                how.starts = 1;
+            }
             place(&mut filled, self.problem, self.boundary, Some(&how), &self.limited())
         };
         let rank = rank(&filled, &placed, prefer);
@@ -358,15 +390,19 @@ impl<'a> Trial<'a> {
 
     /// The best mesh, and in words why it and no other.
     fn finish(self, why_none: Option<String>, layered: Option<String>) -> PlacedFill {
-        let Self { best, seen, result, ctx, .. } = self;
+        let Self { best, seen, result, ctx, hopeless, .. } = self;
         let is_choice = seen.len() > 1;
         let best_of = best
             .as_ref()
             .filter(|_| is_choice)
             .map(|(_, filled, _)| format!("{}, the best of {}", words(filled), seen.join(", ")));
         let other = if is_choice { "further" } else { "other" };
-        let none_valid = why_none.map(|why| format!("no {other} mesh was tried, since none can be valid: {why}"));
-        let choice: Vec<String> = [best_of, none_valid, layered].into_iter().flatten().collect();
+        let none_valid = why_none.map(|why| format!("no {other} mesh was tried, since {why}"));
+        let one_start = match hopeless {
+            Some(Some(Hopeless::Sharp(why))) => Some(format!("one start for each mesh, since {why}")),
+            _ => None,
+        };
+        let choice: Vec<String> = [best_of, none_valid, one_start, layered].into_iter().flatten().collect();
         let stop = if result.stop == StopReason::Finished { ctx.stop().unwrap_or(result.stop) } else { result.stop };
         let meshes = best.into_iter().map(|(_, filled, placed)| (filled, Some(placed))).collect();
         PlacedFill { meshes, stop, tried: result.tried, choice: (!choice.is_empty()).then(|| choice.join("; ")) }

@@ -2,6 +2,7 @@
 
 use crate::fill::check_fillable;
 use crate::limits::{self, LimitsInfo};
+use crate::scale::at_ordinary_size;
 use hexfill_construct::{Existence, existence};
 use hexfill_io::MeshData;
 use hexfill_mesh::{
@@ -149,6 +150,8 @@ fn verdict(surface: &QuadSurface, points: Option<&[[f64; 3]]>) -> (&'static str,
 /// Describes a surface; `points` are the positions of its vertices.
 pub fn describe_surface(surface: &QuadSurface, points: Option<&[[f64; 3]]>) -> SurfaceInfo {
     let small = surface.n_quads() <= SIGNATURE_LIMIT;
+    let scaled = points.map(at_ordinary_size);
+    let points = scaled.as_deref();
     let colours = bipartition(surface);
     let (hex_mesh, because, bounding_cycle) = verdict(surface, points);
     let mut degrees = BTreeMap::new();

@@ -6,6 +6,7 @@ use crate::effort::Effort;
 use crate::geometry::boundary_points;
 use crate::last_resort::{LastResort, leaving_time};
 use crate::problem::Problem;
+use crate::scale::Scaled;
 use crate::simplify::simplify_construction;
 use hexfill_check::{Judged, Level, judge};
 use hexfill_construct::{CellChoice, ConstructOptions};
@@ -243,6 +244,11 @@ pub fn check_fillable(surface: &QuadSurface) -> Result<(), FillError> {
 /// [`FillError`].
 pub fn fill(problem: &Problem, options: &FillOptions, ctx: &Context<'_>) -> Result<FillResult, FillError> {
     check_fillable(&problem.surface)?;
+    if let Some(scaled) = Scaled::of(problem, options) {
+        let mut result = fill(&scaled.problem, &scaled.options, ctx)?;
+        result.meshes.iter_mut().for_each(|filled| scaled.restore(filled));
+        return Ok(result);
+    }
     let solids = solids(&problem.surface, problem.points.as_deref());
     if solids.len() > 1 && matches!(options.interior, InteriorFrom::BuiltIn) {
         let result = fill_apart(problem, &solids, options, ctx)?;

@@ -239,6 +239,13 @@ fn judged_cells(filled: &Filled, points: &[[f64; 3]]) -> Vec<CellQuality> {
 }
 
 impl Placed {
+    /// Judges positions that were changed, if they had been judged before.
+    pub(crate) fn judge_again(&mut self, filled: &Filled) {
+        if !self.cells.is_empty() {
+            self.cells = judged_cells(filled, &self.points);
+        }
+    }
+
     /// Whether det J > 0 is certified on all of every hex.
     pub fn is_certified(&self) -> bool {
         !self.cells.is_empty() && self.cells.iter().all(|c| c.valid)

@@ -9,6 +9,7 @@ use crate::components::solids;
 use crate::fill::{FillError, FillOptions, FillResult, Filled, Strategy, check_fillable, fill};
 use crate::geometry::{Placed, boundary_points, place, place_best, start_positions};
 use crate::problem::Problem;
+use crate::scale::Scaled;
 use hexfill_construct::CellChoice;
 use hexfill_mesh::{Context, StopReason};
 use std::time::Duration;
@@ -54,6 +55,16 @@ pub fn fill_placed(
     how: &PlaceOptions,
     ctx: &Context<'_>,
 ) -> Result<PlacedFill, FillError> {
+    if let Some(scaled) = Scaled::of(problem, options) {
+        let mut made = fill_placed(&scaled.problem, &scaled.options, how, ctx)?;
+        for (filled, placed) in &mut made.meshes {
+            match placed {
+                Some(placed) => scaled.restore_placed(filled, placed),
+                None => scaled.restore(filled),
+            }
+        }
+        return Ok(made);
+    }
     if let (Some(embed), Some(boundary)) = (&how.embed, boundary_points(problem))
         && matches!(options.strategy, Strategy::Auto | Strategy::Shell)
         && options.count == 1

@@ -8,10 +8,11 @@ use crate::choose::GOOD;
 use crate::fill::{FillError, FillOptions};
 use crate::placed_fill::{PlaceOptions, PlacedFill, fill_placed};
 use crate::problem::{Problem, ProblemError};
-use hexfill_check::{Judged, Level, judge};
+use crate::scale::at_ordinary_size;
+use hexfill_check::{Judged, Level, cell_quality, judge};
 use hexfill_geometry::{Vector, cone, cross, direction, dot, halves, holders, midpoint, sub};
 use hexfill_io::MeshData;
-use hexfill_mesh::{Context, Edge, Forest, HexMesh, Offenders, QuadId, StopReason, VertexId, cube, id_type};
+use hexfill_mesh::{Context, Edge, Forest, HexId, HexMesh, Offenders, QuadId, StopReason, VertexId, cube, id_type};
 use std::collections::BTreeMap;
 
 id_type!(
@@ -64,6 +65,14 @@ pub enum RegionsError {
         /// The faces, in the order of the file.
         quads: Offenders<QuadId>,
     },
+    /// Hexes whose corners are listed in mirrored order: the void would be looked for on their wrong side.
+    #[error("{name}: hexes of the file are inside out ({}): {hexes}; mirror the order of their corners", hexes.count)]
+    InsideOut {
+        /// The input.
+        name: String,
+        /// The hexes.
+        hexes: Offenders<HexId>,
+    },
     /// A region cannot be filled.
     #[error("region {region}: {source}")]
     Fill {
@@ -99,12 +108,17 @@ pub fn regions(name: &str, data: &MeshData) -> Result<Vec<Region>, RegionsError>
     if !data.has_coordinates || walls.is_empty() {
         return Ok(Vec::new());
     }
-    let shells = shells(name, &walls, &data.points)?;
+    let points = at_ordinary_size(&data.points);
+    let hexes = inside_out(&data.hexes, &points);
+    if !hexes.is_empty() {
+        return Err(RegionsError::InsideOut { name: name.to_owned(), hexes });
+    }
+    let shells = shells(name, &walls, &points)?;
     let of_shell: Vec<Vec<[u32; 4]>> =
         shells.iter().map(|sides| sides.iter().map(|&s| outward(&walls, s)).collect()).collect();
-    let at = |quad: [u32; 4]| quad.map(|v| data.points[v as usize]);
+    let at = |quad: [u32; 4]| quad.map(|v| points[v as usize]);
     let volume = |quads: &[[u32; 4]]| {
-        let origin = data.points[quads[0][0] as usize];
+        let origin = points[quads[0][0] as usize];
         quads.iter().map(|q| cone(at(*q).map(|p| sub(p, origin)))).sum::<f64>()
     };
     let volumes: Vec<f64> = of_shell.iter().map(|quads| volume(quads)).collect();
@@ -177,6 +191,15 @@ fn walls(data: &MeshData) -> (Vec<[u32; 4]>, Vec<bool>) {
         }
     }
     (walls, occupied)
+}
+
+/// Hexes of negative volume.
+fn inside_out(hexes: &[[u32; 8]], points: &[Vector]) -> Offenders<HexId> {
+    let volume = |hex: &[u32; 8]| {
+        let at = |k: usize| sub(points[hex[k] as usize], points[hex[0] as usize]);
+        cube::FACETS.iter().map(|facet| cone(facet.map(at))).sum::<f64>()
+    };
+    (0..hexes.len()).filter(|&h| volume(&hexes[h]) < 0.0).map(HexId::new).collect()
 }
 
 /// The quad of a side, facing out of the region on that side.
@@ -263,6 +286,8 @@ pub struct FilledRegions {
     pub data: MeshData,
     /// What was made for each region; empty where nothing was found.
     pub fills: Vec<PlacedFill>,
+    /// Hexes of the file itself in which det J > 0 is not certified.
+    pub given_invalid: usize,
     /// Why the work ended.
     pub stop: StopReason,
 }
@@ -273,12 +298,12 @@ impl FilledRegions {
         self.fills.iter().all(|fill| !fill.meshes.is_empty())
     }
 
-    /// Whether det J > 0 is certified in every hex that was made.
+    /// Whether det J > 0 is certified in every hex, those of the file included.
     pub fn is_certified(&self) -> bool {
         let placed = |fill: &PlacedFill| {
             fill.meshes.first().is_some_and(|(_, p)| p.as_ref().is_some_and(crate::Placed::is_certified))
         };
-        self.fills.iter().all(placed)
+        self.given_invalid == 0 && self.fills.iter().all(placed)
     }
 
     /// The least certified scaled Jacobian; -1 if a hex is not certified.
@@ -364,7 +389,9 @@ fn fill_once(
         all.hex_data.push(("certified_positive".to_owned(), certified));
         all.hex_data.push(("scaled_jacobian".to_owned(), quality));
     }
-    Ok(FilledRegions { data: all, fills, stop })
+    let given = Judged::connectivity(data.points.len(), &data.hexes).with_points(&data.points);
+    let given_invalid = cell_quality(&given).iter().filter(|c| c.as_ref().is_none_or(|c| !c.valid)).count();
+    Ok(FilledRegions { data: all, fills, given_invalid, stop })
 }
 
 /// Levels 1 and 2 of the judge on the whole; the rules that fail.
@@ -460,6 +487,28 @@ mod tests {
         assert_eq!(again.data.hexes[..56], holed.hexes[..]);
         // With no void nothing is left to fill.
         assert!(regions("whole", &whole.data).unwrap().is_empty());
+    }
+
+    #[test]
+    fn hexes_of_the_file_are_judged_with_the_rest() {
+        let mut data = boxes(&[([0, 0, 0], [2, 1, 1])]);
+        let at = |p: [f64; 3]| data.points.iter().position(|&q| q == p).unwrap() as u32;
+        let ring = [[1.0, 0.0], [1.0, 1.0], [2.0, 1.0], [2.0, 0.0]];
+        let corner = |k: usize| at([ring[k % 4][0], ring[k % 4][1], if k < 4 { 0.0 } else { 1.0 }]);
+        let hex = [0, 3, 2, 1, 4, 7, 6, 5].map(corner);
+        // The quads between the cells are in no list: the hex closes its cell.
+        data.hexes = vec![hex];
+        assert_eq!(filled(&data, 1).data.hexes.len(), 2);
+        let mut mirrored = data.clone();
+        mirrored.hexes = vec![[0, 1, 2, 3, 4, 5, 6, 7].map(corner)];
+        assert!(matches!(regions("mirrored", &mirrored), Err(RegionsError::InsideOut { .. })));
+        // A corner pulled into the hex, off the void.
+        let v = at([2.0, 1.0, 1.0]) as usize;
+        data.points[v] = [1.3, 0.3, 0.3];
+        let found = regions("bent", &data).unwrap();
+        let how = PlaceOptions { embed: Some(hexfill_embed::Options::default()), ..PlaceOptions::default() };
+        let whole = fill_regions(&data, &found, &FillOptions::default(), &how, &Context::default()).unwrap();
+        assert!(whole.given_invalid == 1 && !whole.is_certified());
     }
 
     #[test]

@@ -49,6 +49,11 @@ pub(super) fn run(
     }
     let options = fill_options(args, None, ctx)?;
     let whole = hexfill::fill_regions(data, regions, &options, &place_options(args), ctx)?;
+    let mut notes = data.notes.clone();
+    if whole.given_invalid > 0 {
+        notes.push(format!("{} hexes of the file itself have no certificate of det J > 0", whole.given_invalid));
+        console.note(&notes[notes.len() - 1]);
+    }
     let valid = args.no_embed || whole.is_certified();
     let files =
         if whole.is_complete() && (valid || !args.require_valid) { write(args, &whole, console)? } else { Vec::new() };
@@ -65,7 +70,7 @@ pub(super) fn run(
         stopped: crate::commands::atlas::stop_word(whole.stop),
         exit_code: exit as u8,
         seconds: start.elapsed().as_secs_f64(),
-        notes: data.notes.clone(),
+        notes,
     };
     if console.json {
         console.print_json(&output)?;
