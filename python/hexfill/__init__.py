@@ -5,7 +5,7 @@
 >>> mesh.n_hexes, mesh.certified
 (36, True)
 
-The verbs are :func:`fill`, :func:`check`, :func:`embed`, :func:`simplify`, :func:`info`, :func:`atlas`, :func:`catalog`,
+The verbs are :func:`fill`, :func:`check`, :func:`embed`, :func:`simplify`, :func:`info`, :func:`doctor`, :func:`mend`, :func:`atlas`, :func:`catalog`,
 :func:`enumerate`, :func:`read`, :func:`write` and :func:`view`; what they share is said in :mod:`hexfill.verbs`.
 """
 
@@ -32,7 +32,9 @@ from .verbs import (
     embed,
     enumerate,
     fill,
+    doctor,
     info,
+    mend,
     read,
     simplify,
     view,
@@ -61,7 +63,9 @@ __all__ = [
     "check",
     "embed",
     "fill",
+    "doctor",
     "info",
+    "mend",
     "read",
     "simplify",
     "view",

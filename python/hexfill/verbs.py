@@ -313,6 +313,28 @@ def info(mesh: SurfaceLike, cells: ArrayLike | None = None) -> dict[str, Any]:
     return loaded(mesh, cells, None).info()
 
 
+def doctor(surface: SurfaceLike, quads: ArrayLike | None = None) -> dict[str, Any]:
+    """Everything that is wrong with a surface, at once, as a dictionary: ``findings`` with ``kind``, ``severity`` (``"remark"``, ``"poor"``, ``"fatal"``),
+    the ``first`` ten places, ``text`` and ``remedy``; the smallest ``parity_changes`` where the number of quads is odd; ``existence``; ``limits``; and
+    ``can_be_filled``: whether :func:`fill` takes it as it is. Whatever the surface, it raises nothing for it.
+    """
+    given = as_surface(surface, quads)
+    return json.loads(_native.doctor(given._data, given.name, run()))
+
+
+def mend(surface: SurfaceLike, quads: ArrayLike | None = None, *, refine: bool = False) -> tuple[Surface, list[str]]:
+    """The surface after the smallest changes, and what they were: seams that only rounding keeps open are welded, faces that are flat or come twice go, triangles
+    are merged in pairs, an odd number of quads becomes even, quads are turned outward. With ``refine`` every face of n sides is cut into n quads.
+
+    Points keep their order, new ones follow; faces keep the tags of those they come from. What needs you stays: ask :func:`doctor` again.
+    """
+    given = as_surface(surface, quads)
+    data, done = _native.mend(given._data, given.name, bool(refine), run())
+    mended = made(data, given.name)
+    assert isinstance(mended, Surface)
+    return mended, done
+
+
 def atlas(surface: SurfaceLike, quads: ArrayLike | None = None) -> list[dict[str, int]]:
     """What the atlas of smallest known fillings has for a sphere of at most 24 quads: ``hexes``, ``interior_vertices`` and
     ``blocked_pairs`` of each; an empty list proves nothing. Positions do not matter."""

@@ -64,11 +64,11 @@ impl Filling {
     }
 
     fn placing(&self) -> PlaceOptions {
-        let mut how = PlaceOptions::default();
-        how.embed = self.embed.then(Options::default);
-        how.best = self.best_of > 1;
-        how.limit = limit(self.embed_limit);
-        how
+        PlaceOptions {
+            embed: self.embed.then(Options::default),
+            best: self.best_of > 1,
+            limit: limit(self.embed_limit),
+        }
     }
 }
 

@@ -8,7 +8,7 @@ use hexfill::io::MeshData;
 use hexfill::mesh::{greedy_shelling, surface_signature};
 use hexfill::search::{Atlas, Cavity, MAX_QUADS};
 use hexfill::view::ViewInput;
-use hexfill::{Problem, catalog as named, describe_mesh, describe_surface};
+use hexfill::{CureOptions, Problem, catalog as named, describe_mesh, describe_surface};
 use pyo3::prelude::*;
 use serde_json::{Value, json};
 use std::sync::Arc;
@@ -30,6 +30,23 @@ pub(crate) fn info(py: Python<'_>, data: &Data, name: String, how: Run) -> PyRes
         Ok(info.to_string())
     })?;
     Ok(text)
+}
+
+/// Everything that is wrong with a surface; JSON.
+#[pyfunction]
+pub(crate) fn doctor(py: Python<'_>, data: &Data, name: String, how: Run) -> PyResult<String> {
+    let data = Arc::clone(&data.0);
+    let (text, _) = run(py, how, move |_| Ok(json!(hexfill::doctor(&name, &data)).to_string()))?;
+    Ok(text)
+}
+
+/// A surface after the smallest changes, and what they were.
+#[pyfunction]
+pub(crate) fn mend(py: Python<'_>, data: &Data, name: String, refine: bool, how: Run) -> PyResult<(Data, Vec<String>)> {
+    let data = Arc::clone(&data.0);
+    let (cured, _) =
+        run(py, how, move |_| Ok(hexfill::cure(&name, &data, &CureOptions::default().with_refine(refine))))?;
+    Ok((cured.data.into(), cured.done))
 }
 
 /// What the embedded atlas knows about a surface; JSON.

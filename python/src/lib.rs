@@ -25,7 +25,7 @@ mod _native {
     #[pymodule_export]
     use crate::judging::check;
     #[pymodule_export]
-    use crate::knowing::{atlas, catalog, catalog_mesh, html, info, png};
+    use crate::knowing::{atlas, catalog, catalog_mesh, doctor, html, info, mend, png};
     #[cfg(debug_assertions)]
     #[pymodule_export]
     use crate::work::panic_for_test;

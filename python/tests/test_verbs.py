@@ -1,6 +1,7 @@
 """Each verb once, as a user would."""
 
 import pickle
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -145,3 +146,17 @@ def test_a_mesh_stays_as_it_was_judged(cube):
             array[0] = 0
     back = pickle.loads(pickle.dumps(mesh))
     assert back.points.tobytes() == mesh.points.tobytes() and back.report == mesh.report and back.certified
+
+
+def test_doctor_says_all_and_mend_mends():
+    corpus = Path(__file__).parents[2] / "corpus" / "sick"
+    sick = hexfill.doctor(corpus / "mixed_box.obj")
+    assert [f["kind"] for f in sick["findings"]] == ["triangles"]
+    assert not sick["can_be_filled"]
+    surface, done = hexfill.mend(corpus / "mixed_box.obj")
+    assert done == ["5 pairs of triangles merged"]
+    assert hexfill.doctor(surface)["can_be_filled"]
+    assert hexfill.fill(surface).n_hexes == 8
+    fine, _ = hexfill.mend(corpus / "odd_ball.obj", refine=True)
+    assert fine.n_quads == 4 * 97
+    assert hexfill.doctor(corpus / "open_box.obj")["findings"][0]["kind"] == "open-edges"

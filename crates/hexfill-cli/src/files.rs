@@ -189,6 +189,14 @@ pub fn check_distinct(paths: &[&str]) -> Result<()> {
     Ok(())
 }
 
+/// What an input is called in titles: the name of the file without its folders, a catalogue name as it is.
+pub fn short_name(input: &str) -> &str {
+    if hexfill::is_named(input) {
+        return input;
+    }
+    Path::new(input).file_name().and_then(|name| name.to_str()).unwrap_or(input)
+}
+
 /// Refuses what is no file with a plain word.
 fn check_input(input: &str) -> Result<()> {
     match std::fs::metadata(input) {

@@ -92,6 +92,8 @@ enum Command {
     Enumerate(commands::enumerate::EnumerateArgs),
     /// Print shell completions.
     Completions(commands::completions::CompletionsArgs),
+    /// Print a manual page.
+    Man(commands::man::ManArgs),
 }
 
 fn main() -> ExitCode {
@@ -152,6 +154,7 @@ fn run() -> ExitCode {
         Command::Atlas(args) => commands::atlas::run(args, &console, &ctx),
         Command::Enumerate(args) => commands::enumerate::run(args, rayon::current_num_threads(), &console, &ctx),
         Command::Completions(args) => commands::completions::run(args),
+        Command::Man(args) => commands::man::run(args),
     };
     console.finish_progress();
     match outcome {

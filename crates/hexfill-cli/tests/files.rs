@@ -235,3 +235,16 @@ fn files_that_cannot_be_filled_say_what_they_are_and_what_to_do() {
         assert!(parts.iter().all(|p| err.contains(p)), "{err}");
     }
 }
+
+#[test]
+fn a_page_is_titled_by_the_name_of_its_file_alone() {
+    let dir = tempfile::tempdir().unwrap();
+    let mesh = dir.path().join("cube.vtk");
+    let mesh = mesh.to_str().unwrap();
+    assert_eq!(hexfill(dir.path(), &["fill", ":cube", "-o", mesh, "--view", "filled.html"]).0, 0);
+    assert_eq!(hexfill(dir.path(), &["view", mesh, "-o", "viewed.html"]).0, 0);
+    for (page, title) in [("filled.html", ":cube"), ("viewed.html", "cube.vtk")] {
+        let text = std::fs::read_to_string(dir.path().join(page)).unwrap();
+        assert!(text.contains(&format!("<title>{title}</title>")), "{page}");
+    }
+}

@@ -191,3 +191,27 @@ fn sharp_edges_and_flat_corners_are_named() {
     assert!(out.contains("2 sharp edges: v") && out.contains("(5.7 degrees, 0.06 hexes)"), "{out}");
     assert!(out.contains("scaled Jacobian: at most 0.100 in any mesh"), "{out}");
 }
+
+#[test]
+fn chords_are_drawn_and_their_quads_counted_once() {
+    let dir = tempfile::tempdir().unwrap();
+    let at = dir.path();
+    let (code, out, err) = hexfill(at, &["info", ":schneiders-pyramid", "--svg", "p.svg"]);
+    assert_eq!(code, 0, "{err}");
+    assert!(out.contains("chords: 2, of 16 (24 passages, crossing itself 8 times), 8 quads"), "{out}");
+    let svg = std::fs::read_to_string(at.join("p.svg")).unwrap();
+    assert!(svg.contains(">c0: 16 quads, 8 self-crossings (24 passages)<") && svg.contains(">c1: 8 quads<"), "{svg}");
+    assert!(svg.contains("<title>Chords of :schneiders-pyramid</title>"));
+    let chord = &info(at, ":schneiders-pyramid")["chords"][0];
+    assert_eq!((&chord["quads"], &chord["passages"], &chord["self_crossings"]), (&16.into(), &24.into(), &8.into()));
+    // A mesh: its boundary. A torus: refused, and nothing is written.
+    let (code, _, err) = hexfill(at, &["fill", ":cube", "-o", "cube.vtk"]);
+    assert_eq!(code, 0, "{err}");
+    assert_eq!(hexfill(at, &["info", "cube.vtk", "--svg", "cube.svg"]).0, 0);
+    assert!(std::fs::read_to_string(at.join("cube.svg")).unwrap().contains("6 quads, 3 chords"));
+    std::fs::write(at.join("ring.obj"), torus(4, 5, 1.0, 0.0, true, 0)).unwrap();
+    for (file, word) in [("ring.svg", "genus 1; only a sphere lies flat"), ("ring.png", "ends in .svg")] {
+        let (code, _, err) = hexfill(at, &["info", "ring.obj", "--svg", file]);
+        assert!(code == 2 && err.contains(word) && !at.join(file).exists(), "{err}");
+    }
+}

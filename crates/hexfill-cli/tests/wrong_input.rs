@@ -183,5 +183,9 @@ fn a_full_disk_is_an_error_and_no_panic() {
 #[test]
 fn ids_that_only_a_huge_table_could_hold() {
     let quads = "[[0,1,2,3],[0,1,5,4],[1,2,6,5],[2,3,7,6],[3,0,4,7],[4,5,6,4000000000]]";
-    refused("sparse.json", format!("{{\"quads\": {quads}}}").as_bytes(), &["4000000000", "without large gaps"]);
+    refused(
+        "sparse.json",
+        format!("{{\"boundary_quads\": {quads}}}").as_bytes(),
+        &["4000000000", "without large gaps"],
+    );
 }

@@ -1,14 +1,17 @@
-//! One self-contained HTML file, or a PNG picture, that shows a hex mesh.
+//! One self-contained HTML file, or a PNG picture, that shows a hex mesh; the chords of a surface as SVG.
 //!
 //! [`html`] puts the mesh, as base64 typed arrays, and a bundled viewer (`viewer/`, TypeScript on three.js) into
 //! one file that opens from disk. The page asks the browser to refuse every network request (content security
 //! policy `default-src 'none'`), so it works offline and sends nothing anywhere. [`png()`] draws a still picture with
-//! a software rasteriser; the page carries one for browsers without WebGL.
+//! a software rasteriser; the page carries one for browsers without WebGL. [`chord_drawing()`] draws the dual curves of a sphere.
 //!
 //! Invariant: both are pure functions of the input: same input, same bytes. They never fail: what does not fit
 //! the mesh (a missing position, a value too few) is left out, and the page says so ([`ViewInput::problems`]).
 
+mod chord_drawing;
+mod circle_packing;
 mod colour;
+mod gallery;
 mod page;
 mod picture;
 mod raster;
@@ -16,6 +19,8 @@ mod raster;
 use hexfill_mesh::{HexId, HexMesh};
 use std::io::{self, Write};
 
+pub use chord_drawing::{ChordDrawing, DrawingError, MOST_QUADS, chord_drawing, chord_thumbnail};
+pub use gallery::{GalleryItem, gallery};
 pub use picture::{Panels, Picture, png, png_with};
 
 /// What is shown.

@@ -90,7 +90,7 @@ fn facts(input: &ViewInput<'_>) -> String {
 }
 
 /// `text` for an HTML element or a quoted attribute.
-fn escape(text: &str) -> String {
+pub(crate) fn escape(text: &str) -> String {
     let mut safe = String::with_capacity(text.len());
     for c in text.chars() {
         match c {

@@ -38,6 +38,10 @@
   check(getComputedStyle($("fallback")).display === "none", "the still picture is hidden");
   check($("title").textContent === data.title && document.title === data.title.replace(/\s+/g, " ").trim(), "title");
 
+  // Opens cut where there is an inside; Reset shows the whole.
+  if (Number($("peel").max) > 0) check($("cut").value === "0.5" && shown() < hexes, "opens cut");
+  await key("0");
+
   // Every hex is there, and a cut, a peel, a limit and the build-up each remove some.
   check(shown() === hexes, "all shown at first");
   await set("cut", 0.5);
@@ -58,6 +62,16 @@
     check(shown() > 0 && shown() <= hexes, "limit");
     await set("limit", 1);
     check($("histogram").querySelectorAll("rect").length === 30, "histogram");
+    if (!$("scale-row").hidden) {
+      const ticks = () => document.querySelector("#legends .ticks").textContent;
+      const fixed = ticks();
+      $("scale-range").click();
+      await wait(20);
+      check(ticks() !== fixed && $("scale-range").ariaPressed === "true", "the scale of the values that occur");
+      $("scale-fixed").click();
+      await wait(20);
+      check(ticks() === fixed, "and back");
+    }
   }
   await key(",");
   check(shown() === hexes - 1, "one hex back");
@@ -102,6 +116,9 @@
   canvas.dispatchEvent(new PointerEvent("pointerup", at));
   await until(() => $("picked").textContent.startsWith($("tip").textContent.match(/^h\d+/)[0]), () => "click picks what hover named");
   await until(() => $("labels").children.length === 8, () => "eight corner labels");
+  $("panel").scrollTop = 0;
+  const [inside, outside] = [$("picked").getBoundingClientRect(), $("panel").getBoundingClientRect()];
+  check(inside.top > outside.top && inside.top < outside.bottom - 20, "what was picked is in sight without scrolling");
   await key("h");
   check(shown() === hexes - 1, "hide");
   await key("H");

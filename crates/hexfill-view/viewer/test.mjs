@@ -15,7 +15,7 @@ const load = async (name) => {
 };
 const { analyse } = await load("topology");
 const { initialState, toHash, fromHash } = await load("state");
-const { sample, valueColour } = await load("colour");
+const { sample, valueColour, onScale } = await load("colour");
 rmSync(work, { recursive: true });
 
 /** nx by ny by nz cubes; `wrap` closes the x direction to a ring. */
@@ -63,7 +63,7 @@ assert.equal(Math.max(...t.columnOf) + 1, 1 + 5 + 5);
 const start = initialState();
 const limits = { hexes: 60, layers: 2, sheets: 12, chords: 12, columns: 47, values: true };
 const state = {
-  ...start, shrink: 0.8, explode: 0.25, colour: "value", limit: 0.125, normal: [0.6, 0, 0.8], cut: 0.4, flip: true, peel: 1, boundary: "xray",
+  ...start, shrink: 0.8, explode: 0.25, colour: "value", scale: "range", limit: 0.125, normal: [0.6, 0, 0.8], cut: 0.4, flip: true, peel: 1, boundary: "xray",
   singular: "all", sheet: 3, sheetAs: "place", chord: "all", column: 46, shown: 60, picked: 59, hidden: [1, 5], theme: "dark",
 };
 const camera = [1, 2, 3, 0, 0.5, 0, 0, 0, 1];
@@ -76,6 +76,13 @@ assert.equal(fromHash("#colour=value&limit=1", start, { ...limits, values: false
 assert.deepEqual(sample([[0, 0, 0], [100, 200, 50]], 0.5), [50, 100, 25]);
 const values = { low: 0, high: 1, flagsNonpositive: true, ramp: [[0, 0, 0], [200, 200, 200]] };
 assert.deepEqual([NaN, 0, 0.5, 9].map((x) => valueColour(values, x, [1, 1, 1], [2, 2, 2])[0]), [1, 2, 100, 200]);
+assert.equal(valueColour(onScale({ ...values, least: 0.4, greatest: 0.6 }, "range"), 0.6, [1, 1, 1], [2, 2, 2])[0], 200);
+
+// Five cubes (the mesh of `enumerate 5` with the fewest chords): lengths count a quad once, passages twice where a chord crosses itself.
+t = analyse(16, Uint32Array.from([
+  0, 1, 2, 3, 4, 5, 6, 7, 8, 0, 3, 9, 10, 4, 7, 11, 1, 12, 13, 2, 5, 14, 15, 6, 2, 8, 9, 13, 1, 10, 11, 12, 9, 3, 15, 13, 11, 7, 14, 12,
+]));
+assert.deepEqual(t.chords.map((c) => [c.length, c.passages, c.selfCrossings]), [[4, 4, 0], [16, 22, 6], [6, 6, 0]]);
 
 if (process.argv[2]) {
   const k = Number(process.argv[2]);

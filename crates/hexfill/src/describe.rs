@@ -72,8 +72,10 @@ pub struct PartInfo {
 /// One chord.
 #[derive(Clone, Debug, Serialize)]
 pub struct ChordInfo {
-    /// Quads.
+    /// Distinct quads.
     pub quads: usize,
+    /// Passages through quads: a quad in which it crosses itself counts twice.
+    pub passages: usize,
     /// How often it crosses itself.
     pub self_crossings: usize,
 }
@@ -181,7 +183,11 @@ pub fn describe_surface(surface: &QuadSurface, points: Option<&[[f64; 3]]>) -> S
         degrees,
         chords: chords
             .iter()
-            .map(|c| ChordInfo { quads: c.length(), self_crossings: c.self_crossings.len() })
+            .map(|c| ChordInfo {
+                quads: c.length(),
+                passages: c.crossings.len(),
+                self_crossings: c.self_crossings.len(),
+            })
             .collect(),
         key: key(surface).to_string(),
         automorphisms: (small && surface.n_components() == 1).then(|| surface_automorphisms(surface).len()),

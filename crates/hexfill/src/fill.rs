@@ -573,6 +573,24 @@ impl FillReport {
     }
 }
 
+/// Writes a mesh with its positions and, if they were judged, two numbers per hex (`certified_positive`, `scaled_jacobian`). The format follows from
+/// the extension; the file appears whole or not at all.
+///
+/// # Errors
+/// [`WriteError`](hexfill_io::WriteError): the format is unknown or holds no hexes, or the file cannot be written.
+pub fn save(
+    path: &std::path::Path,
+    problem: &Problem,
+    filled: &Filled,
+    placed: Option<&crate::Placed>,
+) -> Result<(), hexfill_io::WriteError> {
+    let mut data = mesh_data(problem, &filled.mesh, placed.map(|p| p.points.clone()));
+    if let Some(placed) = placed.filter(|p| !p.cells.is_empty()) {
+        placed.flag(&mut data);
+    }
+    hexfill_io::write_path(path, None, &data)
+}
+
 /// The mesh as file data: the surface's points first, bit for bit, its quads in their order with their tags, then the hexes.
 /// `points` are the positions of all vertices, or `None` for connectivity alone.
 pub fn mesh_data(problem: &Problem, mesh: &HexMesh, points: Option<Vec<[f64; 3]>>) -> MeshData {

@@ -50,8 +50,7 @@ mod tests {
         through.iter_mut().filter(|p| p[0] == 3.0).for_each(|p| *p = [-1.5, 0.5 + 0.3 * p[1], 0.4 + 0.3 * p[2]]);
         problem.points = Some(through.clone());
         assert!(matches!(hopeless(&problem, &through), Some(Hopeless::Crosses(_))));
-        let mut how = PlaceOptions::default();
-        how.embed = Some(hexfill_embed::Options::default());
+        let how = PlaceOptions::default();
         let made = fill_placed(&problem, &FillOptions::default(), &how, &Context::default()).unwrap();
         assert!(
             made.choice.as_ref().is_some_and(|c| c.contains("cross or touch (--best goes on")),

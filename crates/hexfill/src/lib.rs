@@ -11,6 +11,44 @@
 //! assert_eq!(result.meshes[0].mesh.n_hexes(), 36);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! Arrays in, positions out, a file written:
+//!
+//! ```
+//! use hexfill::io::MeshData;
+//! use hexfill::{Context, FillOptions, PlaceOptions, Problem, fill_placed, save};
+//!
+//! let points = (0..8).map(|v| [0, 1, 2].map(|k| f64::from(v >> k & 1))).collect();
+//! let quads = vec![[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+//! let problem = Problem::from_data("a cube", &MeshData::from_quads(points, quads))?;
+//! let made = fill_placed(&problem, &FillOptions::default(), &PlaceOptions::default(), &Context::default())?;
+//! let (filled, placed) = &made.meshes[0];
+//! assert!(placed.as_ref().is_some_and(|p| p.is_certified() && p.worst() > 0.999));
+//! let folder = tempfile::tempdir()?;
+//! save(&folder.path().join("cube.vtu"), &problem, filled, placed.as_ref())?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Work is stopped through the context, and what is wrong with a surface is typed:
+//!
+//! ```
+//! use hexfill::mesh::SurfaceError;
+//! use hexfill::{Context, FillOptions, Problem, ProblemError, StopReason, fill};
+//! use std::sync::atomic::AtomicBool;
+//!
+//! let problem = Problem::load(":geode", None)?;
+//! let stop = AtomicBool::new(true); // set by another thread, say
+//! let ctx = Context { cancel: Some(&stop), ..Context::default() };
+//! assert_eq!(fill(&problem, &FillOptions::default(), &ctx)?.stop, StopReason::Cancelled);
+//!
+//! let mut open = problem.data();
+//! open.quads.pop();
+//! match Problem::from_data("open", &open) {
+//!     Err(ProblemError::Surface { source: SurfaceError::Open { edges }, .. }) => assert_eq!(edges.count, 4),
+//!     other => panic!("{other:?}"),
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod catalog;
 mod choose;
@@ -39,7 +77,7 @@ pub use doctor::{Cure, CureOptions, Diagnosis, crossing_quads, cure, doctor};
 pub use effort::Effort;
 pub use fill::{
     FillError, FillOptions, FillReport, FillResult, Filled, InteriorFrom, Route, Strategy, check_fillable, fill,
-    mesh_data,
+    mesh_data, save,
 };
 pub use geometry::{GeometryReport, Placed, boundary_points, place, place_best, start_positions};
 pub use hexfill_mesh::{Context, Progress, StopReason};

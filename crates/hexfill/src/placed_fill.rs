@@ -14,9 +14,8 @@ use hexfill_construct::CellChoice;
 use hexfill_mesh::{Context, StopReason};
 use std::time::Duration;
 
-/// How to place fillings.
-#[derive(Clone, Copy, Debug, Default)]
-#[non_exhaustive]
+/// How to place fillings. By default each is embedded, in bounded work.
+#[derive(Clone, Copy, Debug)]
 pub struct PlaceOptions {
     /// How to embed; `None`: start positions only, judged only if the cells of the construction are embeddable ones.
     pub embed: Option<hexfill_embed::Options>,
@@ -24,6 +23,12 @@ pub struct PlaceOptions {
     pub best: bool,
     /// How long one embedding may take; with [`best`](Self::best) all of them together.
     pub limit: Option<Duration>,
+}
+
+impl Default for PlaceOptions {
+    fn default() -> Self {
+        Self { embed: Some(hexfill_embed::Options::default()), best: false, limit: None }
+    }
 }
 
 /// Fillings with their coordinates.
@@ -102,16 +107,12 @@ mod tests {
     use super::*;
     use crate::fill::Route;
 
-    fn placing() -> PlaceOptions {
-        PlaceOptions { embed: Some(hexfill_embed::Options::default()), ..PlaceOptions::default() }
-    }
-
     #[test]
     fn a_smallest_filling_without_coordinates_is_left_for_one_with() {
         let problem = Problem::load(":buffer-cube-20", None).unwrap();
         let ctx = Context::default();
         let smallest = fill(&problem, &FillOptions::default(), &ctx).unwrap();
-        let made = fill_placed(&problem, &FillOptions::default(), &placing(), &ctx).unwrap();
+        let made = fill_placed(&problem, &FillOptions::default(), &PlaceOptions::default(), &ctx).unwrap();
         let (filled, placed) = &made.meshes[0];
         assert!(placed.as_ref().unwrap().is_certified(), "{:?}", made.tried);
         assert!(filled.mesh.n_hexes() > smallest.meshes[0].mesh.n_hexes());
@@ -126,7 +127,8 @@ mod tests {
         let quad = problem.surface.quads()[0];
         let [a, b, c] = [0, 1, 2].map(|k: usize| quad[k].index());
         points[b] = [0, 1, 2].map(|k: usize| 0.5 * (points[a][k] + points[c][k]));
-        let made = fill_placed(&problem, &FillOptions::default(), &placing(), &Context::default()).unwrap();
+        let made =
+            fill_placed(&problem, &FillOptions::default(), &PlaceOptions::default(), &Context::default()).unwrap();
         assert_eq!(made.meshes[0].0.mesh.n_hexes(), 1);
         assert!(!made.meshes[0].1.as_ref().unwrap().is_certified());
         assert!(made.choice.as_ref().is_some_and(|c| c.contains("straight or not convex")), "{:?}", made.choice);

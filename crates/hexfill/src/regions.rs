@@ -45,12 +45,17 @@ pub enum RegionsError {
     #[error(transparent)]
     Problem(#[from] ProblemError),
     /// An edge of one face only.
-    #[error("{name}: a wall ends in {} edges: {edges}; walls must close up", edges.count)]
+    #[error(
+        "{name}: {} non-manifold edges, each in three or more quads: {shared}; they could be walls between regions, but walls end at {} edges: {edges}; close the walls, or split the surface",
+        shared.count, edges.count
+    )]
     Open {
         /// The input.
         name: String,
-        /// The edges.
+        /// The edges of one face.
         edges: Offenders<Edge>,
+        /// The edges of more than two.
+        shared: Offenders<Edge>,
     },
     /// A face with the same region on both sides.
     #[error("{name}: {} faces have the same region on both sides: {quads}; remove them, or close the walls they belong to", quads.count)]
@@ -137,7 +142,7 @@ pub fn regions(name: &str, data: &MeshData) -> Result<Vec<Region>, RegionsError>
             continue;
         }
         let baffles: Offenders<QuadId> =
-            sides.iter().filter(|s| **s % 2 == 0 && sides.contains(&(**s ^ 1))).map(|s| QuadId(s / 2)).collect();
+            sides.iter().filter(|s| s.is_multiple_of(2) && sides.contains(&(**s ^ 1))).map(|s| QuadId(s / 2)).collect();
         if !baffles.is_empty() {
             return Err(RegionsError::Baffle { name: name.to_owned(), quads: baffles });
         }
@@ -200,7 +205,7 @@ fn inside_out(hexes: &[[u32; 8]], points: &[Vector]) -> Offenders<HexId> {
 /// The quad of a side, facing out of the region on that side.
 fn outward(walls: &[[u32; 4]], side: u32) -> [u32; 4] {
     let [a, b, c, d] = walls[side as usize / 2];
-    if side % 2 == 0 { [a, d, c, b] } else { [a, b, c, d] }
+    if side.is_multiple_of(2) { [a, d, c, b] } else { [a, b, c, d] }
 }
 
 /// The sides that belong together, each shell ascending.
@@ -213,10 +218,13 @@ fn shells(name: &str, walls: &[[u32; 4]], points: &[Vector]) -> Result<Vec<Vec<u
             edges.entry([a.min(b), a.max(b)]).or_default().push((q, a < b));
         }
     }
-    let open: Offenders<Edge> =
-        edges.iter().filter(|(_, quads)| quads.len() < 2).map(|(&[a, b], _)| Edge(VertexId(a), VertexId(b))).collect();
+    let with = |is_one: fn(usize) -> bool| -> Offenders<Edge> {
+        let of = edges.iter().filter(|(_, quads)| is_one(quads.len()));
+        of.map(|(&[a, b], _)| Edge(VertexId(a), VertexId(b))).collect()
+    };
+    let open = with(|n| n < 2);
     if !open.is_empty() {
-        return Err(RegionsError::Open { name: name.to_owned(), edges: open });
+        return Err(RegionsError::Open { name: name.to_owned(), edges: open, shared: with(|n| n > 2) });
     }
     let mut forest: Forest<Side> = Forest::new(2 * walls.len());
     for (&[a, b], quads) in &edges {
@@ -439,9 +447,8 @@ mod tests {
     fn filled(data: &MeshData, n: usize) -> FilledRegions {
         let found = regions("boxes", data).unwrap();
         assert_eq!(found.len(), n);
-        let mut how = PlaceOptions::default();
-        how.embed = Some(hexfill_embed::Options::default());
-        let filled = fill_regions(data, &found, &FillOptions::default(), &how, &Context::default()).unwrap();
+        let (options, how) = (FillOptions::default(), PlaceOptions::default());
+        let filled = fill_regions(data, &found, &options, &how, &Context::default()).unwrap();
         assert!(filled.is_complete() && filled.is_certified(), "{}", filled.worst());
         assert_eq!(filled.data.points[..data.points.len()], data.points[..]);
         filled

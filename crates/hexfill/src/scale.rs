@@ -96,8 +96,7 @@ mod tests {
 
     #[test]
     fn a_torus_of_any_size_is_filled_with_the_same_mesh() {
-        let mut how = PlaceOptions::default();
-        how.embed = Some(hexfill_embed::Options::default());
+        let how = PlaceOptions::default();
         let mut meshes = Vec::new();
         for size in [1.0, 1e160, 1e-160, 1e-300, 1e300] {
             let problem = torus(size);

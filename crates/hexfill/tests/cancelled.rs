@@ -65,8 +65,7 @@ fn cancelled_at(problem: &Problem, options: &FillOptions, k: u64) -> (PlacedFill
         }
     };
     let ctx = Context { cancel: Some(&cancel), progress: Some(&progress), ..Context::default() };
-    let mut how = PlaceOptions::default();
-    how.embed = Some(hexfill::embed::Options::default());
+    let how = PlaceOptions::default();
     let made = fill_placed(problem, options, &how, &ctx).unwrap();
     (made, reports.into_inner())
 }

@@ -12,8 +12,7 @@ fn voxels(size: [usize; 3], filled: impl Fn([usize; 3]) -> bool) -> Problem {
 
 /// Hexes and certified worst scaled Jacobian of what `fill` makes.
 fn filled(problem: &Problem, options: &FillOptions) -> (usize, f64, Vec<[u32; 8]>) {
-    let mut how = PlaceOptions::default();
-    how.embed = Some(hexfill::embed::Options::default());
+    let how = PlaceOptions::default();
     let made = fill_placed(problem, options, &how, &Context::default()).unwrap();
     let (filled, placed) = &made.meshes[0];
     assert_eq!(filled.route, Route::Shelling);
@@ -76,8 +75,7 @@ fn a_cancelled_shelling_returns_nothing_or_a_mesh() {
     let problem = Problem::load(&file, None).unwrap();
     let cancel = std::sync::atomic::AtomicBool::new(true);
     let ctx = Context { cancel: Some(&cancel), ..Context::default() };
-    let mut how = PlaceOptions::default();
-    how.embed = Some(hexfill::embed::Options::default());
+    let how = PlaceOptions::default();
     let only = FillOptions { strategy: Strategy::Shell, ..FillOptions::default() };
     let made = fill_placed(&problem, &only, &how, &ctx).unwrap();
     assert_eq!(made.stop, hexfill::StopReason::Cancelled);
@@ -91,8 +89,7 @@ fn where_no_mesh_can_be_valid_it_is_said_what_was_tried() {
     let points = problem.points.as_mut().unwrap();
     let corner = points.iter().position(|p| *p == [0.0; 3]).unwrap();
     points[corner] = [0.5, 0.5, 0.0];
-    let mut how = PlaceOptions::default();
-    how.embed = Some(hexfill::embed::Options::default());
+    let how = PlaceOptions::default();
     let made = fill_placed(&problem, &FillOptions::default(), &how, &Context::default()).unwrap();
     assert!(!made.meshes[0].1.as_ref().unwrap().is_certified());
     let choice = made.choice.unwrap();

@@ -1,5 +1,6 @@
 //! `hexfill enumerate N [RES/MOD]`, and `merge`, `verify`, `show` for its checkpoints and objects.
 
+use super::gallery::{self, Gallery};
 use crate::console::Console;
 use crate::exit::Exit;
 use anyhow::{Context as _, bail};
@@ -65,6 +66,9 @@ pub struct EnumerateArgs {
     /// 8 vertices a cube).
     #[arg(long, default_value = "signature", value_name = "FORMAT")]
     format: ListFormat,
+    /// Write a page with a drawing of each object (the first 200): the chords of its boundary, counts, key, signature, symmetries.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["checkpoint", "count_only"])]
+    gallery: Option<String>,
     /// Keep a ledger of finished chunks here; the same command goes on where a killed run stopped.
     #[arg(long, value_name = "DIR")]
     checkpoint: Option<PathBuf>,
@@ -155,6 +159,7 @@ struct Output {
     rule: Rule,
     mirror: Mirror,
     lines: u64,
+    gallery: Option<Gallery>,
 }
 
 impl Output {
@@ -173,10 +178,13 @@ impl Output {
             }
             None => Some(Box::new(std::io::BufWriter::new(std::io::stdout()))),
         };
-        Ok(Self { to, format, rule, mirror, lines: 0 })
+        Ok(Self { to, format, rule, mirror, lines: 0, gallery: None })
     }
 
     fn write(&mut self, code: &Code) -> Result<(), EnumerateError> {
+        if let Some(gallery) = &mut self.gallery {
+            gallery.add(code)?;
+        }
         let Some(to) = &mut self.to else { return Ok(()) };
         let io = |source| EnumerateError::Io { path: "output".into(), source };
         let lines = match self.mirror {
@@ -207,6 +215,9 @@ fn enumerate(args: &EnumerateArgs, threads: usize, console: &Console, ctx: &Cont
         filter: args.max_chords.map(|max_chords| Filter { max_chords, from: args.filter_from }),
     };
     params.check()?;
+    if let Some(file) = &args.gallery {
+        gallery::check(file)?;
+    }
     if args.mirror == Mirror::Distinct && args.nonorientable {
         bail!("--mirror distinct needs orientable meshes: leave out --nonorientable");
     }
@@ -237,6 +248,7 @@ fn enumerate(args: &EnumerateArgs, threads: usize, console: &Console, ctx: &Cont
     let options = LevelOptions { threads, narrow_hashes: args.narrow_hashes };
     let mut output =
         Output::open(args.output.as_ref(), list && args.checkpoint.is_none(), args.format, params.rule, args.mirror)?;
+    output.gallery = args.gallery.is_some().then(Gallery::default);
     let mut levels: Vec<(usize, Tally)> = Vec::new();
     let mut found = Found::default();
     if engine == Engine::Level {
@@ -281,6 +293,9 @@ fn enumerate(args: &EnumerateArgs, threads: usize, console: &Console, ctx: &Cont
         }
     }
     output.finish()?;
+    if let (Some(file), Some(gallery)) = (&args.gallery, &output.gallery) {
+        gallery.write(file, &params, console)?;
+    }
     report(&params, &levels, &targets, &found, args.count_only, console)?;
     let objects = levels
         .last()

@@ -10,8 +10,8 @@ use hexfill::construct::{CellChoice, GivenTets, TetgenTets};
 use hexfill::io::{Format, MeshData};
 use hexfill::search::{Atlas, GrowOptions};
 use hexfill::{
-    BoundaryLayers, Context, FillOptions, FillReport, Filled, GeometryReport, InteriorFrom, PlaceOptions, Placed,
-    PlacedFill, Problem, StopReason, Strategy,
+    BoundaryLayers, Context, FillError, FillOptions, FillReport, Filled, GeometryReport, InteriorFrom, PlaceOptions,
+    Placed, PlacedFill, Problem, ProblemError, StopReason, Strategy,
 };
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -168,6 +168,21 @@ struct Output {
 
 /// Fills, judges, writes, reports.
 pub fn run(args: &FillArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
+    let result = fill(args, console, ctx);
+    let is_sick = |error: &anyhow::Error| {
+        let by_faces = matches!(error.downcast_ref(), Some(ProblemError::Surface { .. } | ProblemError::Seams { .. }));
+        by_faces || matches!(error.downcast_ref(), Some(FillError::OddQuads { .. } | FillError::Improper { .. }))
+    };
+    if result.as_ref().is_err_and(is_sick) {
+        console.note(format!(
+            "`hexfill doctor {}` says everything that is wrong at once, and what --fix can mend",
+            args.surface
+        ));
+    }
+    result
+}
+
+fn fill(args: &FillArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
     let start = Instant::now();
     check_files(args, console)?;
     let mut problem = match input(args)? {
@@ -253,11 +268,8 @@ fn input(args: &FillArgs) -> anyhow::Result<Input> {
 }
 
 pub(super) fn place_options(args: &FillArgs) -> PlaceOptions {
-    let mut how = PlaceOptions::default();
-    how.embed = (!args.no_embed).then(hexfill::embed::Options::default);
-    how.best = args.best_of.is_some();
-    how.limit = args.embed_limit;
-    how
+    let embed = (!args.no_embed).then(hexfill::embed::Options::default);
+    PlaceOptions { embed, best: args.best_of.is_some(), limit: args.embed_limit }
 }
 
 /// A word on quads that cross: work on them is in vain.
@@ -429,7 +441,7 @@ fn write_mesh(
     }
     let Some(placed) = placed else { bail!("no positions to draw: the surface has none") };
     let shown = Shown {
-        title: &problem.name,
+        title: files::short_name(&problem.name),
         points: &placed.points,
         mesh: &filled.mesh,
         scaled_jacobians: (!args.no_embed).then(|| placed.scaled_jacobians()),

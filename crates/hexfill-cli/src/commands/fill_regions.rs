@@ -119,7 +119,7 @@ fn write(args: &FillArgs, whole: &FilledRegions, console: &Console) -> anyhow::R
     let quality =
         whole.data.hex_data.iter().find(|(name, _)| name == "scaled_jacobian").map(|(_, values)| values.clone());
     let shown = Shown {
-        title: &args.surface,
+        title: files::short_name(&args.surface),
         points: &whole.data.points,
         mesh: &mesh,
         scaled_jacobians: quality.filter(|values| values.iter().all(|x| x.is_finite())),

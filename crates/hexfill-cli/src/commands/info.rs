@@ -5,7 +5,9 @@ use crate::exit::Exit;
 use crate::files;
 use anyhow::bail;
 use hexfill::io::MeshData;
-use hexfill::{Problem, SurfaceInfo, describe_mesh, describe_surface};
+use hexfill::mesh::QuadSurface;
+use hexfill::view::chord_drawing;
+use hexfill::{MeshInfo, Problem, SurfaceInfo, describe_mesh, describe_surface};
 use std::fmt::Write as _;
 use std::io::Write as _;
 
@@ -19,6 +21,9 @@ pub struct InfoArgs {
     /// Where an odd cycle bounds inside, so that no hex mesh exists: write its edges, as lines (.obj) or as vertex pairs (.txt).
     #[arg(long, value_name = "FILE")]
     cycle: Option<String>,
+    /// Draw the chords of the surface (of a mesh: of its boundary), laid flat, as SVG. Components that are no spheres are left out.
+    #[arg(long, value_name = "FILE")]
+    svg: Option<String>,
 }
 
 /// Describes a surface or a mesh.
@@ -30,6 +35,13 @@ pub fn run(args: &InfoArgs, console: &Console) -> anyhow::Result<Exit> {
         }
         files::check_distinct(&[&args.input, file])?;
     }
+    if let Some(file) = &args.svg {
+        files::check_folder(file)?;
+        if !file.to_ascii_lowercase().ends_with(".svg") {
+            bail!("{file}: chords are drawn as SVG; give a name that ends in .svg");
+        }
+        files::check_distinct(&[&args.input, file, args.cycle.as_deref().unwrap_or("-")])?;
+    }
     let problem = if hexfill::is_named(&args.input) {
         files::load_problem(&args.input, &args.reading)?
     } else {
@@ -38,7 +50,7 @@ pub fn run(args: &InfoArgs, console: &Console) -> anyhow::Result<Exit> {
             if args.cycle.is_some() {
                 bail!("{}: --cycle is about surfaces; this is a hex mesh", args.input);
             }
-            return mesh_info(&data, console);
+            return mesh_info(args, &data, console);
         }
         Problem::from_data(&args.input, &data)?
     };
@@ -60,7 +72,21 @@ pub fn run(args: &InfoArgs, console: &Console) -> anyhow::Result<Exit> {
             None => console.note(format!("no odd cycle is known to bound inside; {file} was not written")),
         }
     }
+    if let Some(file) = &args.svg {
+        draw_chords(file, &problem.surface, &args.input, console)?;
+    }
     Ok(Exit::Done)
+}
+
+/// Writes the chords of a surface as SVG and says what is not in it.
+fn draw_chords(file: &str, surface: &QuadSurface, input: &str, console: &Console) -> anyhow::Result<()> {
+    let drawing = chord_drawing(surface, &format!("Chords of {}", files::short_name(input)))?;
+    for reason in &drawing.left_out {
+        console.note(format!("{file}: {reason}"));
+    }
+    files::write_file(file, |out| out.write_all(drawing.svg.as_bytes()))?;
+    console.say(format!("wrote {file}"));
+    Ok(())
 }
 
 /// The edges of a cycle, 0-based pairs a line, or with all points of the surface as Wavefront lines.
@@ -105,7 +131,8 @@ fn print_surface(info: &SurfaceInfo, console: &Console) -> anyhow::Result<()> {
         .take(10)
         .map(|c| match c.self_crossings {
             0 => c.quads.to_string(),
-            k => format!("{} (crossing itself {k} times)", c.quads),
+            1 => format!("{} ({} passages, crossing itself once)", c.quads, c.passages),
+            k => format!("{} ({} passages, crossing itself {k} times)", c.quads, c.passages),
         })
         .collect();
     let more = if info.chords.len() > 10 { ", ..." } else { "" };
@@ -136,12 +163,22 @@ fn print_surface(info: &SurfaceInfo, console: &Console) -> anyhow::Result<()> {
     })
 }
 
-fn mesh_info(data: &MeshData, console: &Console) -> anyhow::Result<Exit> {
+fn mesh_info(args: &InfoArgs, data: &MeshData, console: &Console) -> anyhow::Result<Exit> {
     let info = describe_mesh(data)?;
     if console.json {
         console.print_json(&info)?;
-        return Ok(Exit::Done);
+    } else {
+        print_mesh(&info, console)?;
     }
+    if let Some(file) = &args.svg {
+        let mesh = data.hex_mesh()?;
+        let quads: Vec<[u32; 4]> = mesh.boundary_quads().iter().map(|q| q.map(|v| v.0)).collect();
+        draw_chords(file, &QuadSurface::try_new(mesh.n_vertices(), &quads)?, &args.input, console)?;
+    }
+    Ok(Exit::Done)
+}
+
+fn print_mesh(info: &MeshInfo, console: &Console) -> anyhow::Result<()> {
     console.print(format!(
         "hex mesh: {} hexes, {} vertices ({} interior), {} boundary quads",
         info.hexes, info.vertices, info.interior_vertices, info.boundary_quads
@@ -163,5 +200,5 @@ fn mesh_info(data: &MeshData, console: &Console) -> anyhow::Result<Exit> {
         }
         None => console.print("boundary: not a closed manifold; see `hexfill check`")?,
     }
-    Ok(Exit::Done)
+    Ok(())
 }

@@ -10,6 +10,8 @@ pub mod embed;
 pub mod enumerate;
 pub mod fill;
 mod fill_regions;
+pub mod gallery;
 pub mod info;
+pub mod man;
 pub mod simplify;
 pub mod view;

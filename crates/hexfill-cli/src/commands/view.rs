@@ -20,7 +20,7 @@ pub struct ViewArgs {
     /// Format of the mesh.
     #[arg(long, value_name = "FORMAT", value_parser = files::parse_format)]
     from: Option<Format>,
-    /// Title of the page [default: the mesh's name].
+    /// Title of the page [default: the name of its file].
     #[arg(long)]
     title: Option<String>,
 }
@@ -45,7 +45,7 @@ pub fn run(args: &ViewArgs, console: &Console) -> anyhow::Result<Exit> {
         .map(|c| c.as_ref().map_or(f64::NAN, |c| c.certified_lower))
         .collect();
     let shown = Shown {
-        title: args.title.as_deref().unwrap_or(&args.mesh),
+        title: args.title.as_deref().unwrap_or_else(|| files::short_name(&args.mesh)),
         points: &data.points,
         mesh: &mesh,
         scaled_jacobians: Some(scaled_jacobians),

@@ -1,6 +1,7 @@
 // Colours that the data do not bring: valences, categories, overlays.
 
 import type { Rgb, Values } from "./data";
+import type { Scale } from "./state";
 
 export function sample(ramp: Rgb[], t: number): Rgb {
   const last = ramp.length - 1;
@@ -12,6 +13,11 @@ export function sample(ramp: Rgb[], t: number): Rgb {
 
 export function css(c: Rgb): string {
   return `rgb(${c[0]} ${c[1]} ${c[2]})`;
+}
+
+/** The values with the ends of their scale where the state wants them. */
+export function onScale(values: Values, scale: Scale): Values {
+  return scale === "fixed" ? values : { ...values, low: values.least, high: values.greatest };
 }
 
 /** As `Scale::colour` of `src/colour.rs`. */

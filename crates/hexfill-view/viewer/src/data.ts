@@ -7,6 +7,9 @@ export interface Values {
   data: Float64Array;
   low: number;
   high: number;
+  /** Extremes of what occurs; those of an empty list if nothing does. */
+  least: number;
+  greatest: number;
   flagsNonpositive: boolean;
   ramp: Rgb[];
 }
@@ -32,6 +35,8 @@ export function readData(): MeshData {
   const corners = bytes(raw.corners);
   const wide =
     raw.corner_bytes === 1 ? corners : raw.corner_bytes === 2 ? new Uint16Array(corners.buffer) : new Uint32Array(corners.buffer);
+  const values = raw.values && new Float64Array(bytes(raw.values.data).buffer);
+  const finite = values && values.filter(Number.isFinite);
   return {
     title: raw.title,
     vertices: raw.vertices,
@@ -40,9 +45,11 @@ export function readData(): MeshData {
     corners: Uint32Array.from(wide),
     values: raw.values && {
       name: raw.values.name,
-      data: new Float64Array(bytes(raw.values.data).buffer),
+      data: values,
       low: raw.values.low,
       high: raw.values.high,
+      least: finite.reduce((a: number, b: number) => Math.min(a, b), Infinity),
+      greatest: finite.reduce((a: number, b: number) => Math.max(a, b), -Infinity),
       flagsNonpositive: raw.values.flags_nonpositive,
       ramp: raw.values.ramp,
     },

@@ -10,6 +10,9 @@ import { fromHash, initialState, toHash, type ViewState } from "./state";
 import { analyse, EDGES, facetVertices, type Topology } from "./topology";
 import { Viewer } from "./viewer";
 
+/** Part of a mesh that is cut away when its page opens. */
+const OPENING_CUT = 0.5;
+
 function fail(error: unknown): void {
   document.body.classList.remove("ready");
   const reason = error instanceof Error ? error.message : String(error);
@@ -83,7 +86,8 @@ class App {
       columns: this.t.columnOf.reduce((a, b) => Math.max(a, b + 1), 0), values: this.data.values !== null,
     };
     const { state, camera } = fromHash(location.hash, this.first, limits);
-    this.update(state);
+    // Opens cut, where there is an inside to see; a link says itself what is cut, and Reset shows the whole.
+    this.update(location.hash.length < 2 && this.t.layers > 1 ? { ...state, cut: OPENING_CUT } : state);
     if (camera) this.viewer.cameraNumbers = camera;
     else this.viewer.fit();
   }

@@ -1,11 +1,11 @@
 // The panel: inputs that write the state, and texts that follow it.
 
-import { category, EXCESS } from "./colour";
+import { category, EXCESS, onScale } from "./colour";
 import type { MeshData } from "./data";
 import { button, byId, count, digits, make } from "./dom";
 import { bar, entry, histogram, summarise, type Summary } from "./histogram";
 import { excess } from "./lines";
-import type { ColourMode, ViewState } from "./state";
+import type { ColourMode, Scale, ViewState } from "./state";
 import type { Topology } from "./topology";
 import { hexesShown } from "./viewer";
 
@@ -61,7 +61,8 @@ export class Panel {
     const s = this.summary;
     if (!values || !s) return;
     byId("values").hidden = false;
-    byId("histogram").append(histogram(values, s, this.data.colours));
+    byId("scale-row").hidden = !(values.least < values.greatest) || (values.least === values.low && values.greatest === values.high);
+    byId("scale-fixed").textContent = `${digits(values.low)} to ${digits(values.high)}`;
     const words = [`least ${digits(s.least)}`, `mean ${digits(s.mean)}`, `greatest ${digits(s.greatest)}`];
     if (values.flagsNonpositive && s.nonpositive > 0) words.push(`${s.nonpositive} not positive`);
     if (s.missing > 0) words.push(`${s.missing} without a value`);
@@ -102,6 +103,8 @@ export class Panel {
     select("sheet-as", (text) => update({ sheetAs: text as ViewState["sheetAs"] }));
     select("chord", (text) => update({ chord: chosen(text) }));
     byId("cut-flip").addEventListener("click", () => update({ flip: !this.act.state().flip }));
+    byId("scale-fixed").addEventListener("click", () => update({ scale: "fixed" }));
+    byId("scale-range").addEventListener("click", () => update({ scale: "range" }));
     for (const b of document.querySelectorAll<HTMLButtonElement>(".cut-axis")) {
       b.addEventListener("click", () => {
         const axis = Number(b.dataset.axis);
@@ -145,6 +148,7 @@ export class Panel {
       const along = s.normal.findIndex((x) => Math.abs(x) === 1);
       b.setAttribute("aria-pressed", String(s.cut > 0 && Number(b.dataset.axis) === (along < 0 ? 3 : along)));
     }
+    this.scale(s.scale);
     byId("sheet-as-row").hidden = s.sheet === null;
     text("sheet-facts", this.sheetFacts(s));
     text("chord-facts", this.chordFacts(s));
@@ -152,6 +156,17 @@ export class Panel {
     byId("unhide").textContent = `Show ${count(s.hidden.length, "hidden hex", "hidden hexes")}`;
     text("status", shown === data.hexes ? "" : `${shown.toLocaleString("en")} of ${count(data.hexes, "hex", "hexes")} shown`);
     byId("legends").replaceChildren(...this.legends(s, shown));
+  }
+
+  /** The buttons of the scale, and the histogram in its colours. */
+  private scale(scale: Scale): void {
+    byId("scale-fixed").setAttribute("aria-pressed", String(scale === "fixed"));
+    byId("scale-range").setAttribute("aria-pressed", String(scale === "range"));
+    const { values, colours } = this.data;
+    const box = byId("histogram");
+    if (!values || !this.summary || box.dataset.scale === scale) return;
+    box.dataset.scale = scale;
+    box.replaceChildren(histogram(onScale(values, scale), this.summary, colours));
   }
 
   private sheetFacts(s: ViewState): string {
@@ -171,7 +186,8 @@ export class Panel {
   private chordFacts(s: ViewState): string {
     if (typeof s.chord !== "number") return "";
     const chord = this.t.chords[s.chord];
-    return `${count(chord.length, "quad")}, ${count(chord.selfCrossings, "self-crossing")}; boundary of sheet s${chord.sheet}`;
+    const crossings = chord.selfCrossings ? `${count(chord.selfCrossings, "self-crossing")} (${chord.passages} passages)` : "no self-crossing";
+    return `${count(chord.length, "quad")}, ${crossings}; boundary of sheet s${chord.sheet}`;
   }
 
   private legends(s: ViewState, shown: number): HTMLElement[] {
@@ -192,7 +208,7 @@ export class Panel {
       legends.push(make("div", { class: "legend" }, make("b", {}, "Inner edges by valence (4 is regular)"), counts(false),
         ...(s.singular === "all" ? [make("b", {}, "Boundary edges by valence (2 is regular)"), counts(true)] : [])));
     }
-    const values = data.values;
+    const values = data.values && onScale(data.values, s.scale);
     const coloured = hexesShown(s);
     if (coloured && s.colour === "value" && values) {
       const extra = [];

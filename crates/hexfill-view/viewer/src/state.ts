@@ -3,10 +3,14 @@
 
 export type ColourMode = "plain" | "value" | "layer" | "order";
 
+/** Colours over the scale the page came with, or over the values that occur. */
+export type Scale = "fixed" | "range";
+
 export interface ViewState {
   shrink: number;
   explode: number;
   colour: ColourMode;
+  scale: Scale;
   /** Show only hexes with a value up to this, or null for all. */
   limit: number | null;
   /** Normal of the cut plane; hexes whose centre lies further along it are cut away first. */
@@ -33,7 +37,7 @@ export interface ViewState {
 
 export function initialState(): ViewState {
   return {
-    shrink: 1, explode: 0, colour: "plain", limit: null, normal: [0, -1, 0], cut: 0, flip: false, peel: 0,
+    shrink: 1, explode: 0, colour: "plain", scale: "fixed", limit: null, normal: [0, -1, 0], cut: 0, flip: false, peel: 0,
     boundary: "edges", singular: "none", sheet: null, sheetAs: "hexes", chord: null, column: null,
     shown: null, picked: null, hidden: [], theme: "auto",
   };
@@ -75,6 +79,7 @@ export function fromHash(hash: string, start: ViewState, limits: Limits): { stat
       case "shrink": if (within(0.1, 1)) state.shrink = x; break;
       case "explode": if (within(0, 2)) state.explode = x; break;
       case "colour": state.colour = one("plain", "layer", "order", ...(limits.values ? ["value" as const] : [])) ?? start.colour; break;
+      case "scale": state.scale = one("fixed", "range") ?? start.scale; break;
       case "limit": if (limits.values && Number.isFinite(x)) state.limit = x; break;
       case "normal":
         if (numbers.length === 3 && numbers.every(Number.isFinite) && Math.hypot(...numbers) > 0) state.normal = numbers as [number, number, number];

@@ -51,8 +51,10 @@ export interface Sheet {
 }
 
 export interface Chord {
-  /** Number of boundary quads it runs through, one counted twice where the chord crosses itself. */
+  /** Number of distinct boundary quads it runs through. */
   length: number;
+  /** The same with a quad counted twice where the chord crosses itself. */
+  passages: number;
   selfCrossings: number;
   sheet: number;
 }
@@ -211,12 +213,13 @@ function findChords(boundaryFacets: number[], edges: EdgeTable, sheetOfEdge: (ed
   const chordOf = new Int32Array(2 * sides.length);
   sides.forEach((s, i) => {
     for (let k = 0; k < 2; k++) {
-      const c = number(seen, opposite.root(s[k]), () => chords.push({ length: 0, selfCrossings: 0, sheet: sheetOfEdge(s[k]) }));
-      chords[c].length++;
+      const c = number(seen, opposite.root(s[k]), () => chords.push({ length: 0, passages: 0, selfCrossings: 0, sheet: sheetOfEdge(s[k]) }));
+      chords[c].passages++;
       chordOf[2 * i + k] = c;
     }
     if (chordOf[2 * i] === chordOf[2 * i + 1]) chords[chordOf[2 * i]].selfCrossings++;
   });
+  for (const c of chords) c.length = c.passages - c.selfCrossings;
   return { chords, chordOf };
 }
 

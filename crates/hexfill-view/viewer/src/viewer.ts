@@ -4,8 +4,8 @@
 import { Group, PerspectiveCamera, Scene, Vector3, WebGLRenderer, WebGLRenderTarget, type Mesh, ColorManagement, LinearSRGBColorSpace } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import type { LineSegments2 } from "three/examples/jsm/lines/LineSegments2.js";
-import { category, sample, valueColour } from "./colour";
-import type { MeshData, Rgb } from "./data";
+import { category, onScale, sample, valueColour } from "./colour";
+import type { MeshData, Rgb, Values } from "./data";
 import { Facets, sheetSurface } from "./facets";
 import { boundaryWire, chordCurves, segments, singularEdges } from "./lines";
 import type { ViewState } from "./state";
@@ -130,7 +130,8 @@ export class Viewer {
     this.chooseVisible(state);
     this.facets.solid.visible = this.facets.pick.visible = hexesShown(state);
     this.shown = this.facets.show(this.visible, state.shrink < 1 || state.explode > 0);
-    this.facets.colour((h) => this.colourOf(h, state));
+    const values = this.data.values && onScale(this.data.values, state.scale);
+    this.facets.colour((h) => this.colourOf(h, state, values));
     const { t, points } = this;
 
     this.overlay("singular", state.singular, () => {
@@ -211,8 +212,8 @@ export class Viewer {
     }
   }
 
-  private colourOf(h: number, s: ViewState): Rgb | null {
-    const { colours, values } = this.data;
+  private colourOf(h: number, s: ViewState, values: Values | null): Rgb | null {
+    const { colours } = this.data;
     if (s.shown !== null && s.shown < this.data.hexes && this.place[h] === s.shown - 1) return [255, 140, 30];
     if (typeof s.sheet === "number" && s.sheetAs === "place" && this.sheetsOf(h).includes(s.sheet)) return category(s.sheet);
     if (s.colour === "value" && values) return valueColour(values, values.data[h], colours.unknown, colours.flagged);
