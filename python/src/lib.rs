@@ -2,7 +2,7 @@
 //!
 //! The Python half (`python/hexfill/`) takes what people have (numpy arrays, PyVista, meshio, paths), checks it and says what is wrong
 //! with it in their words; here it arrives as buffers of the right type. Three rules: long work runs on a thread of its own while
-//! Python's lock is released ([`work`]); every error is a typed exception with the ids it is about ([`failure`]); no panic crosses
+//! Python's lock is released (`work.rs`); every error is a typed exception with the ids it is about (`failure.rs`); no panic crosses
 //! into Python as one.
 
 mod choices;
