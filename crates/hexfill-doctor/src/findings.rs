@@ -301,9 +301,8 @@ impl Findings {
         if soup.points.is_empty() {
             return;
         }
-        let name = |f: u32| {
-            if soup.faces.iter().all(|face| face.len() == 4) { QuadId(f).to_string() } else { format!("f{f}") }
-        };
+        let all_quads = soup.faces.iter().all(|face| face.len() == 4);
+        let name = |f: u32| if all_quads { QuadId(f).to_string() } else { format!("f{f}") };
         let pairs: Vec<String> = crossings(soup, MOST_CROSSINGS).iter().map(|p| p.map(name).join("+")).collect();
         let (slivers, reflex) = slivers_and_reflex(soup);
         let named = |all: Vec<u32>| -> Vec<String> { all.into_iter().map(name).collect() };

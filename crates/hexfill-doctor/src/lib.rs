@@ -8,10 +8,12 @@
 //! Faces are numbered as in the file. Linear time but for sorting, the search for crossings (a tree of boxes) and the matching of triangles.
 
 mod crossing;
+mod cut;
 mod faults;
 mod findings;
 mod mend;
 mod parity;
+mod sines;
 mod soup;
 mod triangles;
 

@@ -1,10 +1,10 @@
 //! [`mend`]: the faults that have one smallest remedy are mended; what stays is for the findings to say.
 
+use crate::cut::Cutter;
 use crate::faults::{degenerate_faces, repeated_faces};
 use crate::parity::{changed, parity_changes};
 use crate::soup::Soup;
 use crate::triangles::merged_triangles;
-use std::collections::BTreeMap;
 
 /// What may be done.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -74,35 +74,18 @@ impl Mended {
     fn refine(&mut self) {
         let old = std::mem::take(&mut self.soup);
         let origin = std::mem::take(&mut self.origin);
-        let mut next = old.n_points() as u32;
-        let mut new = Soup { points: old.points.clone(), faces: Vec::new() };
-        let mut push = |new: &mut Soup, around: &[u32]| {
-            if !old.points.is_empty() {
-                let share = 1.0 / around.len() as f64;
-                let mean = |k: usize| around.iter().map(|&v| share * old.points[v as usize][k]).sum();
-                new.points.push([mean(0), mean(1), mean(2)]);
-            }
-            next += 1;
-            next - 1
-        };
-        let mut middles: BTreeMap<[u32; 2], u32> = BTreeMap::new();
+        let mut cutter = Cutter::new(&old);
         for (face, from) in old.faces.iter().zip(origin) {
             let n = face.len();
-            let on: Vec<u32> = (0..n)
-                .map(|k| {
-                    let (a, b) = (face[k], face[(k + 1) % n]);
-                    let ends = [a.min(b), a.max(b)];
-                    *middles.entry(ends).or_insert_with(|| push(&mut new, &ends))
-                })
-                .collect();
-            let middle = push(&mut new, face);
+            let on: Vec<u32> = (0..n).map(|k| cutter.middle_of_edge(face[k], face[(k + 1) % n])).collect();
+            let middle = cutter.middle(face);
             for k in 0..n {
-                new.faces.push(vec![face[k], on[k], middle, on[(k + n - 1) % n]]);
+                cutter.new.faces.push(vec![face[k], on[k], middle, on[(k + n - 1) % n]]);
                 self.origin.push(from);
             }
         }
-        self.done.push(format!("{} faces cut into {} quads", old.faces.len(), new.faces.len()));
-        self.soup = new;
+        self.done.push(format!("{} faces cut into {} quads", old.faces.len(), cutter.new.faces.len()));
+        self.soup = cutter.new;
     }
 
     fn make_even(&mut self) {

@@ -5,11 +5,12 @@
 //! curves cross an even number of times), and the number of quads is odd just if some chord crosses itself an odd number of times.
 //! Doubling keeps the shape of the surface, with quads half as wide.
 
+use crate::cut::Cutter;
+use crate::sines::least_sine;
 use crate::soup::Soup;
-use hexfill_geometry::{Vector, cross, dot, norm, sub};
+use hexfill_geometry::midpoint;
 use hexfill_mesh::{Chord, Dart, QuadId, QuadSurface, chords, improper_pairs};
 use serde::Serialize;
-use std::collections::BTreeMap;
 
 /// A change of a surface that adds an odd number of quads.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -77,12 +78,12 @@ fn two_to_three(surface: &QuadSurface, points: &[[f64; 3]]) -> Option<ParityChan
     for d in surface.darts().filter(|&d| d < surface.twin(d)) {
         for parity in 0..2 {
             let (hexagon, three) = three(surface, d, parity);
-            let middle = middle(at(hexagon[0]), at(hexagon[3]));
+            let middle = midpoint(at(hexagon[0]), at(hexagon[3]));
             let quads = three.map(|corners| {
                 let [a, b, c] = corners.map(|k| at(hexagon[k]));
                 [middle, a, b, c]
             });
-            ways.push((worst_sine(&quads), d, parity));
+            ways.push((least_sine(&quads), d, parity));
         }
     }
     // The order of darts among equals.
@@ -103,27 +104,6 @@ fn two_to_three(surface: &QuadSurface, points: &[[f64; 3]]) -> Option<ParityChan
     })
 }
 
-fn middle(a: Vector, b: Vector) -> Vector {
-    [0, 1, 2].map(|k: usize| 0.5 * a[k] + 0.5 * b[k])
-}
-
-/// The least sine of the corners of quads, each seen against the quads' common normal; negative for reflex ones.
-fn worst_sine(quads: &[[Vector; 4]]) -> f64 {
-    let normals: Vec<Vector> = quads
-        .iter()
-        .flat_map(|q| (0..4).map(|k| cross(sub(q[(k + 1) % 4], q[k]), sub(q[(k + 3) % 4], q[k]))))
-        .collect();
-    let lengths =
-        quads.iter().flat_map(|q| (0..4).map(|k| norm(sub(q[(k + 1) % 4], q[k])) * norm(sub(q[(k + 3) % 4], q[k]))));
-    let sum: Vector = normals.iter().fold([0.0; 3], |s, n| [0, 1, 2].map(|k: usize| s[k] + n[k]));
-    let size = norm(sum);
-    normals
-        .iter()
-        .zip(lengths)
-        .map(|(n, length)| dot(*n, sum) / (size * length))
-        .fold(1.0, |m, x| if x >= m { m } else { x })
-}
-
 /// The soup after a change, and per new face the old one it is part of. New points come last.
 pub(crate) fn changed(soup: &Soup, change: &ParityChange) -> (Soup, Vec<u32>) {
     match change {
@@ -136,7 +116,7 @@ fn made_three(soup: &Soup, quads: [u32; 2], edge: [u32; 2]) -> (Soup, Vec<u32>) 
     let mut after = soup.clone();
     let new = soup.n_points() as u32;
     if !soup.points.is_empty() {
-        after.points.push(middle(soup.points[edge[0] as usize], soup.points[edge[1] as usize]));
+        after.points.push(midpoint(soup.points[edge[0] as usize], soup.points[edge[1] as usize]));
     }
     let Ok(surface) = soup.surface() else { return (after, (0..soup.faces.len() as u32).collect()) };
     let is_one = |d: &Dart| {
@@ -163,30 +143,17 @@ fn made_three(soup: &Soup, quads: [u32; 2], edge: [u32; 2]) -> (Soup, Vec<u32>) 
 
 /// Every edge gets a vertex in its middle, and every quad is cut between those of opposite edges.
 fn doubled(soup: &Soup, edges: &[[u32; 2]]) -> (Soup, Vec<u32>) {
-    let mut after = Soup { points: soup.points.clone(), faces: Vec::new() };
-    let mut next = soup.n_points() as u32;
-    let mut push = |after: &mut Soup, ends: &[u32]| {
-        if !soup.points.is_empty() {
-            let share = 1.0 / ends.len() as f64;
-            after.points.push([0, 1, 2].map(|k: usize| ends.iter().map(|&v| share * soup.points[v as usize][k]).sum()));
-        }
-        next += 1;
-        next - 1
-    };
-    let mut middles: BTreeMap<[u32; 2], u32> = BTreeMap::new();
+    let mut cutter = Cutter::new(soup);
     for &[a, b] in edges {
-        middles.entry([a.min(b), a.max(b)]).or_insert_with(|| push(&mut after, &[a, b]));
+        cutter.middle_of_edge(a, b);
     }
     let mut origin = Vec::new();
     for (f, face) in (0..).zip(&soup.faces) {
-        let on = |k: usize| {
-            let (a, b) = (face[k], face[(k + 1) % face.len()]);
-            middles.get(&[a.min(b), a.max(b)]).copied()
-        };
-        let sides: Vec<Option<u32>> = (0..face.len()).map(on).collect();
+        let sides: Vec<Option<u32>> =
+            (0..face.len()).map(|k| cutter.known_middle(face[k], face[(k + 1) % face.len()])).collect();
         let cut: Vec<Vec<u32>> = match sides[..] {
             [Some(e), Some(f), Some(g), Some(h)] => {
-                let m = push(&mut after, face);
+                let m = cutter.middle(face);
                 let [a, b, c, d] = [0, 1, 2, 3].map(|k: usize| face[k]);
                 vec![vec![a, e, m, h], vec![e, b, f, m], vec![m, f, c, g], vec![h, m, g, d]]
             }
@@ -195,9 +162,9 @@ fn doubled(soup: &Soup, edges: &[[u32; 2]]) -> (Soup, Vec<u32>) {
             _ => vec![face.clone()],
         };
         origin.extend(cut.iter().map(|_| f));
-        after.faces.extend(cut);
+        cutter.new.faces.extend(cut);
     }
-    (after, origin)
+    (cutter.new, origin)
 }
 
 impl std::fmt::Display for ParityChange {
@@ -228,31 +195,17 @@ fn shown(quads: &[u32]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use hexfill_geometry::norm;
 
     /// The surface of n^3 cubes, its vertices moved onto a sphere half of the way.
-    fn ball(n: u32) -> Soup {
-        let mut ids = BTreeMap::new();
-        let mut soup = Soup::default();
-        let mut id = |soup: &mut Soup, p: [u32; 3]| {
-            *ids.entry(p).or_insert_with(|| {
-                let x = p.map(|c| 2.0 * f64::from(c) / f64::from(n) - 1.0);
-                soup.points.push(x.map(|c| c * (0.5 + 0.5 / norm(x))));
-                soup.points.len() as u32 - 1
-            })
+    fn ball(n: usize) -> Soup {
+        let (surface, corners) = hexfill_mesh::generate::voxels([n; 3], |_| true).unwrap();
+        let point = |p: [i32; 3]| {
+            let x = p.map(|c| 2.0 * f64::from(c) / n as f64 - 1.0);
+            x.map(|c| c * (0.5 + 0.5 / norm(x)))
         };
-        for (axis, side, i, j) in
-            (0..3).flat_map(|a| (0..2).flat_map(move |s| (0..n * n).map(move |k| (a, s, k / n, k % n))))
-        {
-            let corner = |u: u32, v: u32| {
-                let mut p = [0; 3];
-                (p[axis], p[(axis + 1) % 3], p[(axis + 2) % 3]) = (side * n, i + u, j + v);
-                p
-            };
-            let turns = if side == 1 { [(0, 0), (1, 0), (1, 1), (0, 1)] } else { [(0, 0), (0, 1), (1, 1), (1, 0)] };
-            let face = turns.map(|(u, v)| id(&mut soup, corner(u, v)));
-            soup.faces.push(face.to_vec());
-        }
-        soup
+        let faces = surface.quads().iter().map(|q| q.map(|v| v.0).to_vec()).collect();
+        Soup { points: corners.into_iter().map(point).collect(), faces }
     }
 
     #[test]

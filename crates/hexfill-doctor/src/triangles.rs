@@ -1,7 +1,7 @@
 //! Triangles merged in pairs into quads: a matching of largest size (Edmonds 1965), and of those one whose worst quad is best.
 
+use crate::sines::least_sine;
 use crate::soup::Soup;
-use hexfill_geometry::{Vector, cross, dot, norm, sub};
 use petgraph::algo::maximum_matching;
 use petgraph::graph::UnGraph;
 use std::collections::BTreeMap;
@@ -82,15 +82,9 @@ fn quad_of(p: &[u32], q: &[u32], edge: [u32; 2]) -> Option<[u32; 4]> {
     (apex != p[k]).then(|| [p[k], p[(k + 1) % 3], apex, p[(k + 2) % 3]])
 }
 
-/// The least sine of its corners seen against their common normal; 1 without positions.
+/// The least sine of its corners; 1 without positions.
 fn quality(soup: &Soup, quad: [u32; 4]) -> f64 {
-    let at: Option<Vec<Vector>> = quad.iter().map(|&v| soup.points.get(v as usize).copied()).collect();
-    let Some(at) = at else { return 1.0 };
-    let sides = |k: usize| (sub(at[(k + 1) % 4], at[k]), sub(at[(k + 3) % 4], at[k]));
-    let normals: [Vector; 4] = std::array::from_fn(|k| cross(sides(k).0, sides(k).1));
-    let sum: Vector = std::array::from_fn(|c| normals.iter().map(|n| n[c]).sum());
-    let sine = |k: usize| dot(normals[k], sum) / (norm(sum) * norm(sides(k).0) * norm(sides(k).1));
-    (0..4).map(sine).fold(1.0, |m, x| if x >= m { m } else { x })
+    if soup.points.is_empty() { 1.0 } else { least_sine(&[quad.map(|v| soup.points[v as usize])]) }
 }
 
 #[cfg(test)]
