@@ -12,7 +12,7 @@ use std::time::Instant;
 
 /// Flags of `atlas`.
 #[derive(clap::Args)]
-pub struct AtlasArgs {
+pub(crate) struct AtlasArgs {
     #[command(subcommand)]
     command: AtlasCommand,
 }
@@ -79,7 +79,7 @@ struct BuildReport {
 }
 
 /// Runs the subcommand.
-pub fn run(args: &AtlasArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
+pub(crate) fn run(args: &AtlasArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
     match &args.command {
         AtlasCommand::Build { output, cap, levels, width } => {
             let width = if *width == 0 { u32::MAX } else { *width };

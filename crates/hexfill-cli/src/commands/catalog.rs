@@ -10,7 +10,7 @@ use serde::Serialize;
 
 /// Flags of `catalog`.
 #[derive(clap::Args)]
-pub struct CatalogArgs {
+pub(crate) struct CatalogArgs {
     #[command(subcommand)]
     command: Option<CatalogCommand>,
 }
@@ -62,7 +62,7 @@ fn describe(entry: &Entry) -> anyhow::Result<Shown> {
 }
 
 /// Lists or shows.
-pub fn run(args: &CatalogArgs, console: &Console) -> anyhow::Result<Exit> {
+pub(crate) fn run(args: &CatalogArgs, console: &Console) -> anyhow::Result<Exit> {
     match args.command.as_ref().unwrap_or(&CatalogCommand::List) {
         CatalogCommand::List => {
             let all = catalog::entries().iter().map(describe).collect::<anyhow::Result<Vec<_>>>()?;

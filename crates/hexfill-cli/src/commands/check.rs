@@ -15,7 +15,7 @@ use std::io::Write;
 
 /// Flags of `check`.
 #[derive(clap::Args)]
-pub struct CheckArgs {
+pub(crate) struct CheckArgs {
     /// The mesh to judge.
     mesh: String,
     /// The surface it must fill; without it the mesh is judged against its own boundary.
@@ -113,7 +113,7 @@ fn faces_not_on_boundary(data: &MeshData) -> usize {
 }
 
 /// Judges and reports; exit code 1 if a rule is broken.
-pub fn run(args: &CheckArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
+pub(crate) fn run(args: &CheckArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
     let data = files::read_data(&args.mesh, &args.reading)?;
     for note in &data.notes {
         console.note(note);

@@ -10,7 +10,7 @@ use serde::Serialize;
 
 /// Flags of `doctor`.
 #[derive(clap::Args)]
-pub struct DoctorArgs {
+pub(crate) struct DoctorArgs {
     /// The surface: a file, `-`, a catalogue name or a signature.
     surface: String,
     #[command(flatten)]
@@ -49,7 +49,7 @@ struct Mended {
 }
 
 /// Examines, mends if asked; exit code 1 if the surface (the mended one, with --fix) cannot be filled.
-pub fn run(args: &DoctorArgs, console: &Console) -> anyhow::Result<Exit> {
+pub(crate) fn run(args: &DoctorArgs, console: &Console) -> anyhow::Result<Exit> {
     if let Some(output) = &args.output {
         files::check_output(output, args.to)?;
         files::check_distinct(&[&args.surface, output])?;

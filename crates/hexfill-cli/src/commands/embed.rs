@@ -11,7 +11,7 @@ use serde::Serialize;
 
 /// Flags of `embed`.
 #[derive(clap::Args)]
-pub struct EmbedArgs {
+pub(crate) struct EmbedArgs {
     /// The mesh; the positions of its boundary vertices are kept bit for bit.
     mesh: String,
     /// The mesh to write; format by extension; `-` for stdout.
@@ -57,7 +57,7 @@ struct Output {
 }
 
 /// Embeds, judges, writes; exit code 1 if some hex is not certified.
-pub fn run(args: &EmbedArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
+pub(crate) fn run(args: &EmbedArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
     files::check_output(&args.output, args.to)?;
     let mut data = files::read_data(&args.mesh, &args.from.into())?;
     for note in std::mem::take(&mut data.notes) {

@@ -13,7 +13,7 @@ use std::io::Write as _;
 
 /// Flags of `info`.
 #[derive(clap::Args)]
-pub struct InfoArgs {
+pub(crate) struct InfoArgs {
     /// A surface or a mesh: a file, `-`, a catalogue name or a signature.
     input: String,
     #[command(flatten)]
@@ -27,7 +27,7 @@ pub struct InfoArgs {
 }
 
 /// Describes a surface or a mesh.
-pub fn run(args: &InfoArgs, console: &Console) -> anyhow::Result<Exit> {
+pub(crate) fn run(args: &InfoArgs, console: &Console) -> anyhow::Result<Exit> {
     if let Some(file) = &args.cycle {
         files::check_folder(file)?;
         if !["obj", "txt"].iter().any(|e| file.to_ascii_lowercase().ends_with(&format!(".{e}"))) {

@@ -22,7 +22,7 @@ enum Which {
 
 /// Flags of `simplify`.
 #[derive(clap::Args)]
-pub struct SimplifyArgs {
+pub(crate) struct SimplifyArgs {
     /// The hex mesh; its boundary stays as it is, positions bit for bit.
     mesh: String,
     /// The mesh to write; format by extension; `-` for stdout.
@@ -71,7 +71,7 @@ struct Output {
 }
 
 /// Simplifies, judges, writes. Exit code 0 also if nothing smaller was found: the mesh is then written as it was.
-pub fn run(args: &SimplifyArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
+pub(crate) fn run(args: &SimplifyArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
     let start = Instant::now();
     files::check_output(&args.output, args.to)?;
     if console.json && args.output == "-" {

@@ -11,7 +11,7 @@ use std::io::Write;
 
 /// Flags of `view`.
 #[derive(clap::Args)]
-pub struct ViewArgs {
+pub(crate) struct ViewArgs {
     /// The mesh to show.
     mesh: String,
     /// The file to write: .html for a page that opens from disk, .png for a picture.
@@ -26,7 +26,7 @@ pub struct ViewArgs {
 }
 
 /// Reads a mesh and writes its page or picture.
-pub fn run(args: &ViewArgs, console: &Console) -> anyhow::Result<Exit> {
+pub(crate) fn run(args: &ViewArgs, console: &Console) -> anyhow::Result<Exit> {
     files::check_folder(&args.output)?;
     let data = files::read_data(&args.mesh, &args.from.into())?;
     for note in &data.notes {
@@ -68,7 +68,7 @@ pub fn run(args: &ViewArgs, console: &Console) -> anyhow::Result<Exit> {
 const SHELLING_LIMIT: usize = 20_000;
 
 /// A mesh to show.
-pub struct Shown<'a> {
+pub(crate) struct Shown<'a> {
     pub title: &'a str,
     pub points: &'a [[f64; 3]],
     pub mesh: &'a HexMesh,
@@ -91,7 +91,7 @@ impl Shown<'_> {
     }
 
     /// Writes the page and the picture that are asked for; returns their names.
-    pub fn write(&self, page: Option<String>, picture: Option<String>) -> anyhow::Result<Vec<String>> {
+    pub(crate) fn write(&self, page: Option<String>, picture: Option<String>) -> anyhow::Result<Vec<String>> {
         if let Some(path) = &page {
             self.write_page(path)?;
         }

@@ -45,7 +45,7 @@ impl LastResort {
     ///
     /// # Errors
     /// [`FillError::Refused`].
-    pub fn fill(
+    pub(crate) fn fill(
         &mut self,
         problem: &Problem,
         options: &FillOptions,

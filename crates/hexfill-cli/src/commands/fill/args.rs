@@ -13,7 +13,7 @@ use std::time::Duration;
 
 /// Flags of `fill`.
 #[derive(clap::Args)]
-pub struct FillArgs {
+pub(crate) struct FillArgs {
     /// The surface: a file, `-`, a catalogue name such as :schneiders-pyramid, or a signature.
     pub(super) surface: String,
     /// The mesh to write; format by extension; `-` for stdout. With --count the files are numbered OUT-1, OUT-2, ...

@@ -9,7 +9,7 @@ use crate::console::Console;
 use crate::exit::Exit;
 use crate::files;
 use anyhow::bail;
-pub use args::FillArgs;
+pub(crate) use args::FillArgs;
 use args::{default_log, fill_options, place_options};
 use hexfill::io::MeshData;
 use hexfill::{Context, FillError, FillReport, Filled, Placed, Problem, ProblemError};
@@ -17,7 +17,7 @@ use said::{MeshOutput, Output, say, say_none};
 use std::time::Instant;
 
 /// Fills, judges, writes, reports.
-pub fn run(args: &FillArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
+pub(crate) fn run(args: &FillArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
     let result = fill(args, console, ctx);
     let is_sick = |error: &anyhow::Error| {
         let by_faces = matches!(error.downcast_ref(), Some(ProblemError::Surface { .. } | ProblemError::Seams { .. }));
