@@ -1,0 +1,90 @@
+//! Untangling of meshes of any size: patch by patch where bad cells are few, else all at once.
+//!
+//! Cells that fail are seeds of patches; each patch is untangled alone with its surroundings held.
+//! Patches grow from round to round until nothing fails, and the whole mesh is the last patch.
+
+use super::each_patch::improve_each;
+use super::untangle::{UntangleLimits, untangle};
+use crate::problem::{Incidence, Problem, patches};
+use crate::quality::bad_cells;
+use hexfill_geometry::Vector;
+use hexfill_mesh::{Context, StopReason};
+
+/// Hexes times iterations that untangling all at once may take, for each energy.
+const WHOLE_WORK: usize = 50_000_000;
+
+/// Meshes with more hexes than this get the first energy only.
+const ONE_ENERGY: usize = 5000;
+
+/// Untangles where needed. Returns the cells still bad, ascending, and why it stopped.
+pub(crate) fn untangle_bad(
+    problem: &Problem,
+    points: &mut [Vector],
+    context: &Context<'_>,
+) -> (Vec<usize>, Option<StopReason>) {
+    let incidence = Incidence::new(problem);
+    let mut bad = bad_cells(problem, points);
+    for rings in [0usize, 1, 2, 3, 4, 6, 8, 12] {
+        if bad.is_empty() || context.stop().is_some() {
+            return (bad, context.stop());
+        }
+        // What has grown to more than half of the mesh waits for the whole.
+        let mut parts = patches(problem, &incidence, &bad, rings);
+        parts.retain(|p| 2 * p.problem.hexes.len() <= problem.hexes.len());
+        if parts.is_empty() {
+            break;
+        }
+        context.report("untangle patches", rings as u64, None, || {
+            format!("{} bad cells, {} patches of {rings} rings", bad.len(), parts.len())
+        });
+        improve_each(&parts, points, context, |part, points, context| {
+            let limits = UntangleLimits { rounds: 60, iterations: 100, extra_rounds: 1, ..UntangleLimits::new() };
+            untangle(&part.problem, points, limits, context);
+        });
+        bad = bad_cells(problem, points);
+    }
+    match context.stop() {
+        None if !bad.is_empty() => untangle_whole(problem, points, context),
+        stop => (bad, stop),
+    }
+}
+
+/// Untangles all at once: shapes only, and if that fails with the volume term, from the same points. Keeps what has
+/// fewer bad cells. Returns the cells still bad, ascending, and why it stopped.
+pub(crate) fn untangle_whole(
+    problem: &Problem,
+    points: &mut [Vector],
+    context: &Context<'_>,
+) -> (Vec<usize>, Option<StopReason>) {
+    let start = points.to_vec();
+    let mut best: Option<(Vec<usize>, Vec<Vector>)> = None;
+    let mut stopped = None;
+    // A bound on the work that does not look at the clock: some minutes on the largest meshes.
+    let total = (WHOLE_WORK / problem.hexes.len()).max(1000);
+    for volume_weight in [0.0, 1.0] {
+        let mut trial = start.clone();
+        let limits = UntangleLimits { volume_weight, total, ..UntangleLimits::new() };
+        stopped = untangle(problem, &mut trial, limits, context);
+        let bad = bad_cells(problem, &trial);
+        if best.as_ref().is_none_or(|(least, _)| bad.len() < least.len()) {
+            best = Some((bad, trial));
+        }
+        let valid = best.as_ref().is_some_and(|(bad, _)| bad.is_empty());
+        if stopped.is_some() || valid || problem.hexes.len() > ONE_ENERGY {
+            break;
+        }
+    }
+    let (bad, trial) = best.expect("the loop ran");
+    points.copy_from_slice(&trial);
+    (bad, stopped)
+}
+
+/// Lets the cells of a valid mesh become round, all at once, by one minimisation of the energy of shapes: means of neighbours squeeze
+/// what lies along the surface. Nothing changes if that leaves a cell that is not valid.
+pub(crate) fn round_shapes(problem: &Problem, points: &mut [Vector], context: &Context<'_>) {
+    let mut trial = points.to_vec();
+    untangle(problem, &mut trial, UntangleLimits { rounds: 1, ..UntangleLimits::new() }, context);
+    if bad_cells(problem, &trial).is_empty() {
+        points.copy_from_slice(&trial);
+    }
+}
