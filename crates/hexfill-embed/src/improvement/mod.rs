@@ -25,6 +25,7 @@ mod program_rows;
 mod program_step;
 mod rising_barrier;
 mod sequential_programs;
+mod smoothing;
 mod untangle;
 mod untangle_patches;
 

@@ -4,6 +4,7 @@
 //! Patches grow from round to round until nothing fails, and the whole mesh is the last patch.
 
 use super::each_patch::improve_each;
+use super::smoothing::smooth;
 use super::untangle::{UntangleLimits, untangle};
 use crate::problem::{Incidence, Problem, patches};
 use crate::quality::bad_cells;
@@ -16,6 +17,27 @@ const WHOLE_WORK: usize = 50_000_000;
 /// Meshes with more hexes than this get the first energy only.
 const ONE_ENERGY: usize = 5000;
 
+/// In meshes with more hexes than this noise is smoothed away before anything is untangled,
+const SMOOTHED: usize = 20_000;
+/// if more than one cell of so many is bad,
+const NOISY: usize = 20;
+/// by so many sweeps, if they leave one bad cell of so many.
+const SWEEPS: usize = 10;
+const LEFT: usize = 4;
+
+/// Smooths `points` if that leaves few of the bad cells. Returns the cells bad now, ascending. Where bad cells are everywhere, patches round them are the
+/// whole mesh, and untangling that is slow; noise in a good mesh is gone after some sweeps, and patches do the rest.
+fn smooth_away(problem: &Problem, points: &mut [Vector], bad: Vec<usize>) -> Vec<usize> {
+    let mut trial = points.to_vec();
+    smooth(problem, &mut trial, SWEEPS);
+    let left = bad_cells(problem, &trial);
+    if LEFT * left.len() > bad.len() {
+        return bad;
+    }
+    points.copy_from_slice(&trial);
+    left
+}
+
 /// Untangles where needed. Returns the cells still bad, ascending, and why it stopped.
 pub(crate) fn untangle_bad(
     problem: &Problem,
@@ -24,6 +46,9 @@ pub(crate) fn untangle_bad(
 ) -> (Vec<usize>, Option<StopReason>) {
     let incidence = Incidence::new(problem);
     let mut bad = bad_cells(problem, points);
+    if problem.hexes.len() > SMOOTHED && NOISY * bad.len() > problem.hexes.len() {
+        bad = smooth_away(problem, points, bad);
+    }
     for rings in [0usize, 1, 2, 3, 4, 6, 8, 12] {
         if bad.is_empty() || context.stop().is_some() {
             return (bad, context.stop());
