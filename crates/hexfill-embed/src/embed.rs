@@ -2,13 +2,15 @@
 
 use crate::bounds::{StarBound, least_bound, refine_stars, star_bounds_of};
 use crate::error::EmbedError;
+use crate::improvement::{untangle_rings, untangle_whole};
 use crate::options::{Objective, Options};
 use crate::pipeline::{NEAR_OPTIMUM, Normal, SMALL, run};
 use crate::problem::find_symmetry;
+use crate::quality::bad_cells;
 use crate::report::Embedding;
 use crate::starts::{Weights, place_at_means};
 use hexfill_geometry::Vector;
-use hexfill_mesh::{Context, HexMesh};
+use hexfill_mesh::{Context, HexId, HexMesh};
 
 /// Finds coordinates for `mesh`.
 ///
@@ -93,6 +95,30 @@ fn run_from_symmetric(
 pub fn tutte_start(mesh: &HexMesh, boundary_points: &[[f64; 3]]) -> Result<Vec<[f64; 3]>, EmbedError> {
     let normal = Normal::new(mesh, boundary_points, None)?;
     Ok(normal.restore(&means(&normal)))
+}
+
+/// Moves the vertices near the cells of `start` (one point per vertex) that are not valid, in patches of up to `rings` rings, and then all at once by at
+/// most `whole` iterations for each energy: a quick try, much shorter than [`embed`]. Returns the positions and the cells that are still not valid.
+///
+/// # Errors
+/// As [`embed`].
+pub fn untangle_near(
+    mesh: &HexMesh,
+    start: &[[f64; 3]],
+    rings: usize,
+    whole: usize,
+    context: &Context<'_>,
+) -> Result<(Vec<[f64; 3]>, Vec<HexId>), EmbedError> {
+    let normal = Normal::new(mesh, start, Some(start))?;
+    let problem = &normal.problem;
+    let mut points = normal.with_start(start);
+    let rings: Vec<usize> = (0..=rings).collect();
+    let bad = bad_cells(problem, &points);
+    let mut bad = untangle_rings(problem, &mut points, bad, &rings, context);
+    if !bad.is_empty() && whole > 0 {
+        bad = untangle_whole(problem, &mut points, whole, context).0;
+    }
+    Ok((normal.restore(&points), bad.into_iter().map(HexId::new).collect()))
 }
 
 /// The vertex-star upper bounds of all boundary vertices, ascending by vertex. All count the corners with at most one free edge;

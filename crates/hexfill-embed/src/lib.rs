@@ -47,7 +47,7 @@ mod solvers;
 mod starts;
 
 pub use bounds::{CornerLimit, EdgeLimit, StarBound, SurfaceLimits, VertexLimit, surface_limits};
-pub use embed::{embed, quick_star_bound, star_bounds, tutte_start};
+pub use embed::{embed, quick_star_bound, star_bounds, tutte_start, untangle_near};
 pub use error::EmbedError;
 pub use options::{Objective, Options};
 pub use report::{CellQuality, EmbedReport, Embedding};

@@ -35,4 +35,4 @@ pub(crate) use patch_programs::{climb_worst, is_worst_isolated};
 pub(crate) use rising_barrier::{BarrierLimits, follow_worst};
 pub(crate) use sequential_programs::{ProgramLimits, climb};
 pub(crate) use untangle::{UntangleLimits, untangle};
-pub(crate) use untangle_patches::{round_shapes, untangle_bad, untangle_whole};
+pub(crate) use untangle_patches::{round_shapes, untangle_all, untangle_bad, untangle_rings, untangle_whole};

@@ -44,14 +44,29 @@ pub(crate) fn untangle_bad(
     points: &mut [Vector],
     context: &Context<'_>,
 ) -> (Vec<usize>, Option<StopReason>) {
-    let incidence = Incidence::new(problem);
     let mut bad = bad_cells(problem, points);
     if problem.hexes.len() > SMOOTHED && NOISY * bad.len() > problem.hexes.len() {
         bad = smooth_away(problem, points, bad);
     }
-    for rings in [0usize, 1, 2, 3, 4, 6, 8, 12] {
+    bad = untangle_rings(problem, points, bad, &[0, 1, 2, 3, 4, 6, 8, 12], context);
+    match context.stop() {
+        None if !bad.is_empty() => untangle_all(problem, points, context),
+        stop => (bad, stop),
+    }
+}
+
+/// Untangles patches of so many rings round the cells that are bad, one number of rings after the other. Returns the cells still bad, ascending.
+pub(crate) fn untangle_rings(
+    problem: &Problem,
+    points: &mut [Vector],
+    mut bad: Vec<usize>,
+    rings: &[usize],
+    context: &Context<'_>,
+) -> Vec<usize> {
+    let incidence = Incidence::new(problem);
+    for &rings in rings {
         if bad.is_empty() || context.stop().is_some() {
-            return (bad, context.stop());
+            break;
         }
         // What has grown to more than half of the mesh waits for the whole.
         let mut parts = patches(problem, &incidence, &bad, rings);
@@ -68,24 +83,29 @@ pub(crate) fn untangle_bad(
         });
         bad = bad_cells(problem, points);
     }
-    match context.stop() {
-        None if !bad.is_empty() => untangle_whole(problem, points, context),
-        stop => (bad, stop),
-    }
+    bad
 }
 
-/// Untangles all at once: shapes only, and if that fails with the volume term, from the same points. Keeps what has
-/// fewer bad cells. Returns the cells still bad, ascending, and why it stopped.
+/// Untangles all at once, with a bound on the work that does not look at the clock: some minutes on the largest meshes.
+pub(crate) fn untangle_all(
+    problem: &Problem,
+    points: &mut [Vector],
+    context: &Context<'_>,
+) -> (Vec<usize>, Option<StopReason>) {
+    untangle_whole(problem, points, (WHOLE_WORK / problem.hexes.len()).max(1000), context)
+}
+
+/// Untangles all at once by at most so many iterations for each energy: shapes only, and if that fails with the volume term, from the same points.
+/// Keeps what has fewer bad cells. Returns the cells still bad, ascending, and why it stopped.
 pub(crate) fn untangle_whole(
     problem: &Problem,
     points: &mut [Vector],
+    total: usize,
     context: &Context<'_>,
 ) -> (Vec<usize>, Option<StopReason>) {
     let start = points.to_vec();
     let mut best: Option<(Vec<usize>, Vec<Vector>)> = None;
     let mut stopped = None;
-    // A bound on the work that does not look at the clock: some minutes on the largest meshes.
-    let total = (WHOLE_WORK / problem.hexes.len()).max(1000);
     for volume_weight in [0.0, 1.0] {
         let mut trial = start.clone();
         let limits = UntangleLimits { volume_weight, total, ..UntangleLimits::new() };

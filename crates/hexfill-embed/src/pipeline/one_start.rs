@@ -2,7 +2,7 @@
 
 use super::improve::{LARGE, improve};
 use super::normal::Normal;
-use crate::improvement::{lift_barely_valid, round_shapes, untangle_bad, untangle_whole};
+use crate::improvement::{lift_barely_valid, round_shapes, untangle_all, untangle_bad};
 use crate::options::{Objective, Options};
 use crate::quality::{Verdict, bad_cells};
 use crate::starts::{Weights, place_at_means};
@@ -99,7 +99,7 @@ impl Work<'_> {
         let as_given = self.is_as_given(number);
         let is_large = problem.hexes.len() > self.options.local_limit;
         if problem.symmetry.is_some() || !(is_large || as_given) {
-            return untangle_whole(problem, points, context);
+            return untangle_all(problem, points, context);
         }
         let (bad, stopped) = untangle_bad(problem, points, context);
         if bad.is_empty() && !as_given {
