@@ -1,0 +1,253 @@
+//! A search prepared for being run in parts: the tree is cut where it is wide enough, and each state there is a task.
+//!
+//! Of tasks that symmetries of the boundary carry to each other one is kept: what lies below one is the image of what lies below the
+//! other. The tasks depend on surface, bound and group alone.
+
+use crate::code::code;
+use crate::cover::Cover;
+use crate::error::ProveError;
+use crate::mesh::{Mesh, judged};
+use crate::state::State;
+use crate::symmetry::{Action, Subgroup, Symmetries};
+use crate::tree::{Walker, step};
+use hexfill_mesh::{Context, QuadSurface};
+use rustc_hash::FxHashSet;
+use std::collections::BTreeMap;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// The tree is cut where it has at least so many states, or at its end.
+const TASKS: usize = 4096;
+
+/// What is searched for: hex balls with the given boundary, at most so many hexes, and the subgroup among their symmetries.
+#[derive(Clone, Debug)]
+pub struct Problem {
+    surface: QuadSurface,
+    max_hexes: usize,
+    symmetries: Symmetries,
+    group: Subgroup,
+}
+
+impl Problem {
+    /// A problem with no symmetry imposed.
+    ///
+    /// # Errors
+    /// [`ProveError::BadSurface`] unless the surface is one sphere, three-connected, all of whose vertices are used, with at most
+    /// [`MAX_ORDER`](crate::MAX_ORDER) automorphisms; [`ProveError::BadParameters`] for a bound that is too large for it.
+    pub fn new(surface: &QuadSurface, max_hexes: usize) -> Result<Self, ProveError> {
+        let bad = |why: &str| Err(ProveError::BadSurface { why: why.into() });
+        if !surface.is_sphere() || surface.n_used_vertices() != surface.n_vertices() {
+            return bad("it is not one sphere all of whose vertices are used");
+        }
+        if surface.n_vertices() > 100 {
+            return bad("it has more than 98 quads");
+        }
+        let Some(symmetries) = Symmetries::of(surface) else { return bad("it has more than 64 automorphisms") };
+        // Euler: at most 2 H + 1 - Q / 2 interior vertices.
+        let most = surface.n_vertices() + 2 * max_hexes + 1 - surface.n_quads() / 2;
+        if max_hexes > 120 || most >= crate::state::MAX_VERTICES {
+            return Err(ProveError::BadParameters {
+                why: format!(
+                    "{max_hexes} hexes may need {most} vertices, fewer than {} are possible",
+                    crate::state::MAX_VERTICES
+                ),
+            });
+        }
+        Ok(Self { surface: surface.clone(), max_hexes, symmetries, group: 1 })
+    }
+
+    /// The same problem for meshes that have a subgroup of the boundary's automorphisms among their symmetries.
+    #[must_use]
+    pub fn with_group(self, group: Subgroup) -> Self {
+        Self { group, ..self }
+    }
+
+    /// The boundary's automorphisms.
+    pub fn symmetries(&self) -> &Symmetries {
+        &self.symmetries
+    }
+
+    /// The boundary.
+    pub fn surface(&self) -> &QuadSurface {
+        &self.surface
+    }
+}
+
+/// A state at which the tree was cut: the hexes on the way, and their hash.
+#[derive(Clone)]
+struct Task {
+    covers: Vec<Cover>,
+    path: u64,
+}
+
+/// See the module page.
+pub struct Plan {
+    problem: Problem,
+    root: Walker,
+    tasks: Vec<Task>,
+    split_nodes: u64,
+}
+
+impl std::fmt::Debug for Plan {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Plan").field("problem", &self.problem).field("tasks", &self.tasks.len()).finish_non_exhaustive()
+    }
+}
+
+/// What the search of some tasks found. Sums of these do not depend on order or division.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Outcome {
+    /// States visited.
+    pub nodes: u64,
+    /// Sum of a hash of every state visited.
+    pub tree_sum: u128,
+    /// The meshes by signature, one of each class.
+    pub meshes: BTreeMap<String, Mesh>,
+}
+
+impl Outcome {
+    /// Adds what other tasks found.
+    pub fn merge(&mut self, other: Self) {
+        self.nodes += other.nodes;
+        self.tree_sum = self.tree_sum.wrapping_add(other.tree_sum);
+        self.meshes.extend(other.meshes);
+    }
+
+    /// Number of classes by number of hexes.
+    pub fn classes(&self) -> BTreeMap<usize, usize> {
+        let mut out = BTreeMap::new();
+        for mesh in self.meshes.values() {
+            *out.entry(mesh.hexes.len()).or_insert(0) += 1;
+        }
+        out
+    }
+}
+
+impl Plan {
+    /// Cuts the tree.
+    ///
+    /// # Errors
+    /// [`ProveError::BadSurface`]; [`ProveError::Stopped`] if the context says so.
+    pub fn prepare(problem: Problem, ctx: &Context<'_>) -> Result<Self, ProveError> {
+        let state = State::new(&problem.surface)?;
+        let action = Action::new(&problem.symmetries, problem.group);
+        let root = Walker::new(state, action, problem.max_hexes);
+        let images = problem.symmetries.normalizer(problem.group);
+        let boundary: Vec<[u8; 4]> = problem.surface.quads().iter().map(|q| q.map(|v| v.0 as u8)).collect();
+        let n_boundary = problem.surface.n_vertices();
+        let mut plan = Self { problem, root, tasks: vec![Task { covers: Vec::new(), path: 0 }], split_nodes: 0 };
+        while !plan.tasks.is_empty() && plan.tasks.len() < TASKS {
+            let mut next = Vec::new();
+            let mut seen = FxHashSet::default();
+            let mut deeper = false;
+            for task in &plan.tasks {
+                if let Some(reason) = ctx.stop() {
+                    return Err(ProveError::Stopped { reason });
+                }
+                let mut walker = plan.walker(task);
+                if walker.is_finished() {
+                    next.push(task.clone());
+                    continue;
+                }
+                plan.split_nodes += 1;
+                for cover in walker.children() {
+                    let mut child = task.clone();
+                    child.covers.push(cover);
+                    child.path = step(task.path, &cover);
+                    let hexes = plan.walker(&child).hexes().to_vec();
+                    if seen.insert(code(&boundary, n_boundary, &hexes, &images)) {
+                        deeper = true;
+                        next.push(child);
+                    }
+                }
+            }
+            plan.tasks = next;
+            if !deeper {
+                break;
+            }
+        }
+        Ok(plan)
+    }
+
+    /// What is searched for.
+    pub fn problem(&self) -> &Problem {
+        &self.problem
+    }
+
+    /// Number of tasks; parts beyond it are empty.
+    pub fn n_tasks(&self) -> usize {
+        self.tasks.len()
+    }
+
+    /// States visited while cutting the tree.
+    pub fn split_nodes(&self) -> u64 {
+        self.split_nodes
+    }
+
+    fn walker(&self, task: &Task) -> Walker {
+        let mut walker = self.root.clone();
+        for cover in &task.covers {
+            // It fitted when the tree was cut.
+            let fits = walker.place(cover);
+            debug_assert!(fits);
+        }
+        walker
+    }
+
+    /// Searches the tasks whose number is `index` modulo `of`.
+    ///
+    /// # Errors
+    /// [`ProveError::Stopped`]; [`ProveError::Refused`] if the judge refuses a mesh found, which is a defect of this crate.
+    pub fn run(&self, index: usize, of: usize, ctx: &Context<'_>) -> Result<Outcome, ProveError> {
+        let mut out = Outcome::default();
+        for task in self.tasks.iter().skip(index).step_by(of.max(1)) {
+            let mut walker = self.walker(task);
+            walker.descend(task.path, ctx).map_err(|reason| ProveError::Stopped { reason })?;
+            let walked = std::mem::take(&mut walker.walked);
+            out.nodes += walked.nodes;
+            out.tree_sum = out.tree_sum.wrapping_add(walked.tree_sum);
+            for hexes in &walked.found {
+                if let Some((signature, mesh)) = judged(&self.problem.surface, hexes)? {
+                    out.meshes.entry(signature).or_insert(mesh);
+                }
+            }
+        }
+        Ok(out)
+    }
+
+    /// Searches everything on threads. The outcome does not depend on their number.
+    ///
+    /// # Errors
+    /// As [`run`](Self::run).
+    pub fn run_whole(&self, threads: usize, ctx: &Context<'_>) -> Result<Outcome, ProveError> {
+        let parts = self.n_tasks().max(1);
+        let cursor = AtomicUsize::new(0);
+        let out: Mutex<Result<Outcome, ProveError>> = Mutex::new(Ok(Outcome::default()));
+        let work = || {
+            loop {
+                let part = cursor.fetch_add(1, Ordering::Relaxed);
+                if part >= parts {
+                    return;
+                }
+                let result = self.run(part, parts, ctx);
+                let mut all = out.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+                match (&mut *all, result) {
+                    (Ok(sum), Ok(part)) => sum.merge(part),
+                    (_, Ok(_)) => {}
+                    (all, Err(error)) => {
+                        cursor.store(parts, Ordering::Relaxed);
+                        if all.is_ok() {
+                            *all = Err(error);
+                        }
+                    }
+                }
+            }
+        };
+        std::thread::scope(|scope| {
+            for _ in 0..threads.max(1) {
+                scope.spawn(work);
+            }
+        });
+        out.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner)
+    }
+}
