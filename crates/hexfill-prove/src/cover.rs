@@ -4,12 +4,14 @@
 //! try for each stabilizer it may have; the other vertices of the orbit are then old ones for the corners still to be chosen.
 
 use crate::state::{Glue, Hex, MAX_VERTICES, State};
-use crate::symmetry::Action;
-use hexfill_mesh::cube::{EDGES, POSITIONS};
+use crate::symmetry::{Action, MAX_ORDER};
+use hexfill_mesh::cube::{FACETS, POSITIONS};
+use std::sync::OnceLock;
 
 /// The corners above the covered quad, in the order they are chosen.
 const FAR: [usize; 4] = [4, 7, 6, 5];
 const NEAR: [usize; 4] = [0, 3, 2, 1];
+const BLANK: u128 = 1 << (MAX_VERTICES - 1);
 
 /// Number of edges between two corners: 1 an edge, 2 a face diagonal, 3 a body diagonal.
 pub(crate) const fn distance(i: usize, j: usize) -> u8 {
@@ -27,6 +29,63 @@ const DISTANCE: [[u8; 8]; 8] = {
     table
 };
 
+/// Per far corner the diagonals, chosen before, of facets that lack only that corner.
+const ACROSS: [&[[usize; 2]]; 4] = [&[], &[[3, 4]], &[[2, 7]], &[[1, 6], [1, 4], [4, 6]]];
+
+/// Per set of corners the smallest face of the cube that holds it.
+const HULL: [u8; 256] = {
+    let mut table = [0; 256];
+    let mut set = 1usize;
+    while set < 256 {
+        // Coordinates on which all corners of the set agree stay fixed.
+        let (mut all, mut any, mut i) = ([1u8; 3], [0u8; 3], 0);
+        while i < 8 {
+            if set >> i & 1 == 1 {
+                let mut axis = 0;
+                while axis < 3 {
+                    all[axis] &= POSITIONS[i][axis];
+                    any[axis] |= POSITIONS[i][axis];
+                    axis += 1;
+                }
+            }
+            i += 1;
+        }
+        i = 0;
+        while i < 8 {
+            let (mut inside, mut axis) = (true, 0);
+            while axis < 3 {
+                inside &= POSITIONS[i][axis] >= all[axis] && POSITIONS[i][axis] <= any[axis];
+                axis += 1;
+            }
+            table[set] |= (inside as u8) << i;
+            i += 1;
+        }
+        set += 1;
+    }
+    table
+};
+
+/// Per far corner `i`, `j`, `k` of one facet, `i` and `j` opposite: where the last of the three is chosen at that corner.
+fn facet_triples() -> &'static [Vec<[usize; 3]>; 4] {
+    static TABLE: OnceLock<[Vec<[usize; 3]>; 4]> = OnceLock::new();
+    TABLE.get_or_init(|| {
+        std::array::from_fn(|depth| {
+            let later = |i: usize| FAR[depth + 1..].contains(&i);
+            let mut out = Vec::new();
+            for facet in FACETS {
+                for (k, corner) in facet.into_iter().enumerate() {
+                    let (i, j) = (facet[(k + 1) % 4], facet[(k + 3) % 4]);
+                    let triple = [i, j, corner];
+                    if triple.contains(&FAR[depth]) && !triple.into_iter().any(later) {
+                        out.push(triple);
+                    }
+                }
+            }
+            out
+        })
+    })
+}
+
 /// A hex that can cover a quad, and the orbits of new vertices it brings (one vertex each without symmetry).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cover {
@@ -40,7 +99,7 @@ pub(crate) struct Cover {
 pub(crate) struct Allowance {
     /// Most new vertices.
     pub new_vertices: i32,
-    /// Most new edges less new vertices, for one hex without symmetry.
+    /// Most new edges less new vertices, of the hex and its images.
     pub excess: i32,
 }
 
@@ -54,6 +113,11 @@ struct Search<'a, F> {
     place: [u8; MAX_VERTICES],
     n: usize,
     coloured: u128,
+    /// Number of new edges of the hex so far.
+    fresh: i32,
+    /// Per far corner chosen and element: the corners chosen whose vertices are also in that image of the hex.
+    shared: [[u8; MAX_ORDER]; 5],
+    triples: &'static [Vec<[usize; 3]>; 4],
     visit: F,
 }
 
@@ -77,10 +141,19 @@ pub(crate) fn covers<F: FnMut(&Cover) -> bool>(
         place: [0; MAX_VERTICES],
         n: state.n(),
         coloured: state.coloured,
+        fresh: 0,
+        shared: [[0; MAX_ORDER]; 5],
+        triples: facet_triples(),
         visit,
     };
     for i in NEAR {
         search.place[usize::from(hex[i])] = i as u8 + 1;
+    }
+    for g in 1..search.action.order() {
+        for i in NEAR {
+            let here = search.place[usize::from(search.action.image(g, hex[i]))] > 0;
+            search.shared[0][g] |= u8::from(here) << i;
+        }
     }
     search.choose(0);
 }
@@ -103,7 +176,13 @@ impl<F: FnMut(&Cover) -> bool> Search<'_, F> {
                 _ => self.state.body_row(v),
             };
         }
-        set &= if colour { self.coloured } else { !self.coloured };
+        // The last id is never used: it stands for a vertex not made yet.
+        set &= BLANK | if colour { self.coloured } else { !self.coloured };
+        for &[i, j] in ACROSS[depth] {
+            set &= self.state.fourth(self.cover.hex[i], self.cover.hex[j]);
+        }
+        // Elements whose image of the hex must share this corner too.
+        let sharing = if depth == 3 { self.restrict_last(&mut set) } else { 0 };
         let mut old = set & ((1 << self.n) - 1);
         while old != 0 {
             let v = old.trailing_zeros() as u8;
@@ -114,6 +193,12 @@ impl<F: FnMut(&Cover) -> bool> Search<'_, F> {
         }
         let (n, coloured) = (self.n, self.coloured);
         for s in 0..self.action.n_stabilizers() {
+            if set & BLANK == 0 {
+                break;
+            }
+            if sharing & !self.action.stabilizer(s) != 0 {
+                continue;
+            }
             let size = self.action.orbit_size(s);
             let made = (n + size) as i32 - self.state.counts.vertices;
             if made > self.allowance.new_vertices || n + size >= MAX_VERTICES {
@@ -138,39 +223,112 @@ impl<F: FnMut(&Cover) -> bool> Search<'_, F> {
         true
     }
 
+    /// What symmetry leaves for the last corner: takes the rest out of `set`, and returns the elements that must fix a new vertex there.
+    fn restrict_last(&self, set: &mut u128) -> u64 {
+        let p = FAR[3];
+        let mut sharing = 0;
+        for g in 1..self.action.order() {
+            let shared = self.shared[3][g];
+            let missing = HULL[usize::from(shared)] & !shared;
+            let others = missing & !(1 << p);
+            if others != 0 {
+                // The corner missed must have its image here.
+                *set &= 1 << self.action.image(g, self.cover.hex[others.trailing_zeros() as usize]);
+            }
+            if missing >> p & 1 == 1 {
+                sharing |= 1 << g;
+                let back = self.action.inverse(g);
+                let mut images = !((1u128 << self.n) - 1);
+                for o in Self::chosen(2) {
+                    images |= 1 << self.action.image(back, self.cover.hex[o]);
+                }
+                *set &= images | self.action.fixed(g);
+            }
+        }
+        sharing
+    }
+
     /// Puts a vertex at far corner number `depth` and goes on.
     fn put(&mut self, depth: usize, v: u8) -> bool {
         let p = FAR[depth];
         self.cover.hex[p] = v;
+        let facets_fit = self.triples[depth].iter().all(|&[i, j, corner]| {
+            let [a, b, c] = [i, j, corner].map(|i| self.cover.hex[i]);
+            !self.state.blocks_facet(a, b, c)
+        });
+        if !facets_fit {
+            return true;
+        }
         self.place[usize::from(v)] = p as u8 + 1;
-        let go_on = !self.agrees(depth) || self.choose(depth + 1);
+        let fresh = self.fresh;
+        let go_on = !self.agrees(depth) || !self.edges_fit(depth) || self.choose(depth + 1);
+        self.fresh = fresh;
         self.place[usize::from(v)] = 0;
         go_on
     }
 
-    /// Whether every image of the hex that has two of its vertices so far has them at the same distance.
-    fn agrees(&self, depth: usize) -> bool {
+    /// Corners chosen up to far corner number `depth`.
+    fn chosen(depth: usize) -> impl Iterator<Item = usize> {
+        NEAR.into_iter().chain(FAR.into_iter().take(depth + 1))
+    }
+
+    /// Whether the hex so far and each of its images can share nothing, a vertex, an edge, a facet or all of it, and agree there.
+    fn agrees(&mut self, depth: usize) -> bool {
+        let (p, order) = (FAR[depth], self.action.order());
+        let v = self.cover.hex[p];
+        let chosen = Self::chosen(depth).fold(0u8, |set, o| set | 1 << o);
+        let (before, after) = self.shared.split_at_mut(depth + 1);
+        let shared = &mut after[0];
+        shared[..order].copy_from_slice(&before[depth][..order]);
+        for g in 1..order {
+            let at = usize::from(self.place[usize::from(self.action.image(g, v))]);
+            if at == 0 {
+                continue;
+            }
+            shared[g] |= 1 << p;
+            shared[self.action.inverse(g)] |= 1 << (at - 1);
+            for o in Self::chosen(depth) {
+                let other = usize::from(self.place[usize::from(self.action.image(g, self.cover.hex[o]))]);
+                if other > 0 && DISTANCE[at - 1][other - 1] != DISTANCE[p][o] {
+                    return false;
+                }
+            }
+        }
+        // What is missing to a face of the cube can only come with the corners still to be chosen.
+        shared[1..order].iter().all(|&set| (HULL[usize::from(set)] & !set & chosen).count_ones() as usize <= 3 - depth)
+    }
+
+    /// Counts the new edges at far corner number `depth`. `false` if those of the hex and its images are too many: the edges still to come
+    /// outnumber the vertices still to come.
+    fn edges_fit(&mut self, depth: usize) -> bool {
+        let is_fresh = |s: &Self, p: usize, o: usize| {
+            DISTANCE[p][o] == 1 && s.state.body_row(s.cover.hex[p]) >> s.cover.hex[o] & 1 == 1
+        };
         let p = FAR[depth];
-        let place = |g: usize, o: usize| usize::from(self.place[usize::from(self.action.image(g, self.cover.hex[o]))]);
-        (1..self.action.order()).all(|g| {
-            let at = place(g, p);
-            at == 0
-                || NEAR.into_iter().chain(FAR[..depth].iter().copied()).all(|o| {
-                    let other = place(g, o);
-                    other == 0 || DISTANCE[at - 1][other - 1] == DISTANCE[p][o]
-                })
-        })
+        self.fresh += Self::chosen(depth).filter(|&o| is_fresh(self, p, o)).count() as i32;
+        let most = self.allowance.excess + self.n as i32 - self.state.counts.vertices;
+        let order = self.action.order();
+        if self.fresh * order as i32 <= most || order == 1 {
+            return self.fresh <= most;
+        }
+        let mut edges = [0u16; 12 * MAX_ORDER];
+        let mut n = 0;
+        for d in 0..=depth {
+            for o in Self::chosen(d).filter(|&o| is_fresh(self, FAR[d], o)) {
+                for g in 0..order {
+                    let [x, y] = [FAR[d], o].map(|i| self.action.image(g, self.cover.hex[i]));
+                    let edge = u16::from(x.min(y)) << 8 | u16::from(x.max(y));
+                    if !edges[..n].contains(&edge) {
+                        edges[n] = edge;
+                        n += 1;
+                    }
+                }
+            }
+        }
+        n as i32 <= most
     }
 
     fn finish(&mut self) -> bool {
-        if self.action.order() == 1 {
-            let hex = &self.cover.hex;
-            let is_new = |&&[i, j]: &&[usize; 2]| self.state.body_row(hex[i]) >> hex[j] & 1 == 1;
-            let edges = EDGES.iter().filter(is_new).count() as i32;
-            if edges - i32::from(self.cover.n_orbits) > self.allowance.excess {
-                return true;
-            }
-        }
         self.state.glue(&self.cover.hex).is_none() || (self.visit)(&self.cover)
     }
 }

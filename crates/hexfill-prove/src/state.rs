@@ -22,7 +22,7 @@ use std::sync::OnceLock;
 /// Most vertices of a mesh, so that a row of the pair table is a `u128`.
 pub const MAX_VERTICES: usize = 128;
 /// Most quads a state meets.
-const MAX_QUADS: usize = 1024;
+pub(crate) const MAX_QUADS: usize = 1024;
 const NO_QUAD: u16 = u16::MAX;
 
 /// A hex: eight vertices in VTK order.
@@ -265,6 +265,19 @@ impl State {
         }
         self.rows[OPEN_DIAGONAL + usize::from(a)] >> b & 1 == 0
             || !self.quads[usize::from(self.words[usize::from(a) * MAX_VERTICES + usize::from(b)])].contains(&corner)
+    }
+
+    /// Which vertices can complete a facet with the diagonal `a`, `b`: those of the quad that has it, or any.
+    #[inline]
+    pub(crate) fn fourth(&self, a: u8, b: u8) -> u128 {
+        if self.rows[MARKED + usize::from(a)] >> b & 1 == 0 {
+            return u128::MAX;
+        }
+        let q = self.words[usize::from(a) * MAX_VERTICES + usize::from(b)];
+        if self.rows[OPEN_DIAGONAL + usize::from(a)] >> b & 1 == 0 {
+            return 0;
+        }
+        self.quads[usize::from(q)].iter().fold(0, |set, &v| set | 1 << v)
     }
 
     /// Makes a vertex of a colour; its id is the number of vertices before.

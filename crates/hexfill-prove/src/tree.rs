@@ -5,7 +5,7 @@
 
 use crate::bound::{euler_rest, most_new_vertices};
 use crate::cover::{Allowance, Cover, covers, place_orbit};
-use crate::state::{Hex, State};
+use crate::state::{Hex, MAX_QUADS, State};
 use crate::symmetry::Action;
 use hexfill_mesh::{Context, StopReason};
 
@@ -31,6 +31,8 @@ pub(crate) struct Walker {
     /// Per quad met whether it stands for its images.
     stands: Vec<bool>,
     max_hexes: i32,
+    /// Per quad how many covers were counted last, a guess for the next time.
+    last_count: Vec<u32>,
     pub(crate) walked: Walked,
 }
 
@@ -51,7 +53,14 @@ impl Walker {
         };
         let stands =
             (0..n).map(|q| (0..q).all(|p| (1..action.order()).all(|g| sorted(p, g) != sorted(q, 0)))).collect();
-        Self { state, action, stands, max_hexes: max_hexes as i32, walked: Walked::default() }
+        Self {
+            state,
+            action,
+            stands,
+            max_hexes: max_hexes as i32,
+            last_count: vec![8; MAX_QUADS],
+            walked: Walked::default(),
+        }
     }
 
     /// The hexes placed.
@@ -87,22 +96,24 @@ impl Walker {
         let left = self.max_hexes - self.state.counts.hexes;
         let Some(new_vertices) = most_new_vertices(&self.state, left) else { return Vec::new() };
         let allowance = Allowance { new_vertices, excess: 2 * left + euler_rest(&self.state) };
+        // Those that had few covers before first: the fewer are known, the sooner counting stops. Of equal ones the oldest quad is
+        // taken, so that the choice does not depend on the order.
+        let mut quads: Vec<u16> = self.state.open_quads().filter(|&q| self.stands[usize::from(q)]).collect();
+        quads.sort_by_key(|&q| self.last_count[usize::from(q)]);
         let mut best = None;
         let mut fewest = usize::MAX;
-        for q in self.state.open_quads() {
-            if !self.stands[usize::from(q)] {
-                continue;
-            }
+        for q in quads {
             let mut count = 0;
             covers(&self.state, &mut self.action, q, allowance, |_| {
                 count += 1;
-                count < fewest
+                count <= fewest
             });
-            if count < fewest {
+            self.last_count[usize::from(q)] = count as u32;
+            if count == 0 {
+                return Vec::new();
+            }
+            if count < fewest || count == fewest && best.is_some_and(|b| q < b) {
                 (best, fewest) = (Some(q), count);
-                if count == 0 {
-                    return Vec::new();
-                }
             }
         }
         let mut out = Vec::with_capacity(fewest);
