@@ -313,10 +313,10 @@ impl<F: FnMut(&Cover) -> bool> Search<'_, F> {
         }
         let mut edges = [0u16; 12 * MAX_ORDER];
         let mut n = 0;
-        for d in 0..=depth {
-            for o in Self::chosen(d).filter(|&o| is_fresh(self, FAR[d], o)) {
+        for (d, far) in FAR.into_iter().enumerate().take(depth + 1) {
+            for o in Self::chosen(d).filter(|&o| is_fresh(self, far, o)) {
                 for g in 0..order {
-                    let [x, y] = [FAR[d], o].map(|i| self.action.image(g, self.cover.hex[i]));
+                    let [x, y] = [far, o].map(|i| self.action.image(g, self.cover.hex[i]));
                     let edge = u16::from(x.min(y)) << 8 | u16::from(x.max(y));
                     if !edges[..n].contains(&edge) {
                         edges[n] = edge;

@@ -16,6 +16,9 @@ pub enum ProveError {
         /// What is wrong, and what would be right.
         why: String,
     },
+    /// A ledger.
+    #[error(transparent)]
+    Ledger(#[from] hexfill_ledger::LedgerError),
     /// A mesh found is none: a defect of this crate.
     #[error("the judge refuses a mesh found ({rules}): {hexes:?}")]
     Refused {

@@ -9,12 +9,12 @@
 //!
 //! ```
 //! use hexfill_mesh::{Context, QuadSurface, cube::FACETS};
-//! use hexfill_prove::{Plan, Problem};
+//! use hexfill_prove::{Plan, Problem, search_whole};
 //!
 //! let cube = QuadSurface::try_new(8, &FACETS.map(|f| f.map(|v| v as u32)))?;
 //! let ctx = Context::default();
 //! let plan = Plan::prepare(Problem::new(&cube, 7)?, &ctx)?;
-//! let outcome = plan.run_whole(1, &ctx)?;
+//! let outcome = search_whole(&plan, 1, &ctx)?;
 //! // The cube itself, and the tesseract less a cube.
 //! assert_eq!(outcome.classes().into_iter().collect::<Vec<_>>(), [(1, 1), (7, 1)]);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -23,15 +23,19 @@
 mod bound;
 mod code;
 mod cover;
+mod driver;
 mod error;
 mod journal;
 mod mesh;
 mod plan;
+mod shellable;
 mod state;
 mod symmetry;
 mod tree;
 
+pub use driver::{Header, Record, Searched, merge, search, search_whole};
 pub use error::ProveError;
 pub use mesh::Mesh;
 pub use plan::{Outcome, Plan, Problem};
+pub use shellable::is_shellable;
 pub use symmetry::{MAX_ORDER, Subgroup, Symmetries};

@@ -6,15 +6,15 @@
 use crate::code::code;
 use crate::cover::Cover;
 use crate::error::ProveError;
-use crate::mesh::{Mesh, judged};
+use crate::mesh::{Mesh, signature_of};
 use crate::state::State;
 use crate::symmetry::{Action, Subgroup, Symmetries};
 use crate::tree::{Walker, step};
-use hexfill_mesh::{Context, QuadSurface};
+use hexfill_ledger::Chunk;
+use hexfill_mesh::{Context, QuadSurface, canonical_surface, parse_surface_signature};
 use rustc_hash::FxHashSet;
 use std::collections::BTreeMap;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::collections::btree_map::Entry;
 
 /// The tree is cut where it has at least so many states, or at its end.
 const TASKS: usize = 4096;
@@ -22,7 +22,13 @@ const TASKS: usize = 4096;
 /// What is searched for: hex balls with the given boundary, at most so many hexes, and the subgroup among their symmetries.
 #[derive(Clone, Debug)]
 pub struct Problem {
+    /// In the numbering of its signature: tasks and sums do not depend on the input's.
     surface: QuadSurface,
+    signature: String,
+    /// Per vertex the input's; `mirrored` if this turns the surface inside out.
+    input_vertex: Vec<u32>,
+    mirrored: bool,
+    n_input_vertices: usize,
     max_hexes: usize,
     symmetries: Symmetries,
     group: Subgroup,
@@ -42,7 +48,6 @@ impl Problem {
         if surface.n_vertices() > 100 {
             return bad("it has more than 98 quads");
         }
-        let Some(symmetries) = Symmetries::of(surface) else { return bad("it has more than 64 automorphisms") };
         // Euler: at most 2 H + 1 - Q / 2 interior vertices.
         let most = surface.n_vertices() + 2 * max_hexes + 1 - surface.n_quads() / 2;
         if max_hexes > 120 || most >= crate::state::MAX_VERTICES {
@@ -53,7 +58,20 @@ impl Problem {
                 ),
             });
         }
-        Ok(Self { surface: surface.clone(), max_hexes, symmetries, group: 1 })
+        let canonical = canonical_surface(surface);
+        let named =
+            parse_surface_signature(&canonical.signature).map_err(|e| ProveError::BadSurface { why: e.to_string() })?;
+        let Some(symmetries) = Symmetries::of(&named) else { return bad("it has more than 64 automorphisms") };
+        Ok(Self {
+            surface: named,
+            signature: canonical.signature,
+            input_vertex: canonical.vertices.iter().map(|v| v.0).collect(),
+            mirrored: canonical.mirrored,
+            n_input_vertices: surface.n_vertices(),
+            max_hexes,
+            symmetries,
+            group: 1,
+        })
     }
 
     /// The same problem for meshes that have a subgroup of the boundary's automorphisms among their symmetries.
@@ -67,9 +85,38 @@ impl Problem {
         &self.symmetries
     }
 
-    /// The boundary.
-    pub fn surface(&self) -> &QuadSurface {
+    /// The boundary's signature.
+    pub fn signature(&self) -> &str {
+        &self.signature
+    }
+
+    /// The boundary, numbered as its signature says.
+    pub(crate) fn surface(&self) -> &QuadSurface {
         &self.surface
+    }
+
+    /// The bound.
+    pub fn max_hexes(&self) -> usize {
+        self.max_hexes
+    }
+
+    /// The subgroup imposed.
+    pub fn group(&self) -> Subgroup {
+        self.group
+    }
+
+    /// A mesh found, over the vertex ids of the surface as it was given; interior vertices follow.
+    pub fn in_input_ids(&self, mesh: &Mesh) -> Mesh {
+        let n = self.input_vertex.len();
+        let id = |v: u32| match self.input_vertex.get(v as usize) {
+            Some(&w) => w,
+            None => (v as usize - n + self.n_input_vertices) as u32,
+        };
+        let order = if self.mirrored { [4, 5, 6, 7, 0, 1, 2, 3] } else { [0, 1, 2, 3, 4, 5, 6, 7] };
+        Mesh {
+            n_vertices: mesh.n_vertices - n + self.n_input_vertices,
+            hexes: mesh.hexes.iter().map(|h| order.map(|i: usize| id(h[i]))).collect(),
+        }
     }
 }
 
@@ -110,7 +157,20 @@ impl Outcome {
     pub fn merge(&mut self, other: Self) {
         self.nodes += other.nodes;
         self.tree_sum = self.tree_sum.wrapping_add(other.tree_sum);
-        self.meshes.extend(other.meshes);
+        for (signature, mesh) in other.meshes {
+            // Of equal classes the smaller list stays: no order of the work shows.
+            match self.meshes.entry(signature) {
+                Entry::Vacant(slot) => drop(slot.insert(mesh)),
+                Entry::Occupied(mut slot) if mesh.hexes < slot.get().hexes => drop(slot.insert(mesh)),
+                Entry::Occupied(_) => {}
+            }
+        }
+    }
+
+    /// Sum of the xxh3-128 of the signatures: the same for any order and division of the work.
+    pub fn hash_sum(&self) -> u128 {
+        let hash = |s: &String| xxhash_rust::xxh3::xxh3_128(s.as_bytes());
+        self.meshes.keys().map(hash).fold(0, u128::wrapping_add)
     }
 
     /// Number of classes by number of hexes.
@@ -194,60 +254,25 @@ impl Plan {
         walker
     }
 
-    /// Searches the tasks whose number is `index` modulo `of`.
+    /// Searches the tasks of a chunk: those whose number is `chunk.index` modulo `chunk.of`.
     ///
     /// # Errors
     /// [`ProveError::Stopped`]; [`ProveError::Refused`] if the judge refuses a mesh found, which is a defect of this crate.
-    pub fn run(&self, index: usize, of: usize, ctx: &Context<'_>) -> Result<Outcome, ProveError> {
+    pub fn run(&self, chunk: Chunk, ctx: &Context<'_>) -> Result<Outcome, ProveError> {
         let mut out = Outcome::default();
-        for task in self.tasks.iter().skip(index).step_by(of.max(1)) {
+        for task in self.tasks.iter().skip(chunk.index).step_by(chunk.of.max(1)) {
             let mut walker = self.walker(task);
             walker.descend(task.path, ctx).map_err(|reason| ProveError::Stopped { reason })?;
             let walked = std::mem::take(&mut walker.walked);
             out.nodes += walked.nodes;
             out.tree_sum = out.tree_sum.wrapping_add(walked.tree_sum);
             for hexes in &walked.found {
-                if let Some((signature, mesh)) = judged(&self.problem.surface, hexes)? {
+                let mesh = Mesh::new(hexes);
+                if let Some(signature) = signature_of(&self.problem.surface, &mesh)? {
                     out.meshes.entry(signature).or_insert(mesh);
                 }
             }
         }
         Ok(out)
-    }
-
-    /// Searches everything on threads. The outcome does not depend on their number.
-    ///
-    /// # Errors
-    /// As [`run`](Self::run).
-    pub fn run_whole(&self, threads: usize, ctx: &Context<'_>) -> Result<Outcome, ProveError> {
-        let parts = self.n_tasks().max(1);
-        let cursor = AtomicUsize::new(0);
-        let out: Mutex<Result<Outcome, ProveError>> = Mutex::new(Ok(Outcome::default()));
-        let work = || {
-            loop {
-                let part = cursor.fetch_add(1, Ordering::Relaxed);
-                if part >= parts {
-                    return;
-                }
-                let result = self.run(part, parts, ctx);
-                let mut all = out.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-                match (&mut *all, result) {
-                    (Ok(sum), Ok(part)) => sum.merge(part),
-                    (_, Ok(_)) => {}
-                    (all, Err(error)) => {
-                        cursor.store(parts, Ordering::Relaxed);
-                        if all.is_ok() {
-                            *all = Err(error);
-                        }
-                    }
-                }
-            }
-        };
-        std::thread::scope(|scope| {
-            for _ in 0..threads.max(1) {
-                scope.spawn(work);
-            }
-        });
-        out.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner)
     }
 }

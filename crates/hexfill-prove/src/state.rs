@@ -171,11 +171,6 @@ impl State {
         self.counts.vertices as usize
     }
 
-    /// Number of vertices of the boundary; they come first.
-    pub(crate) fn n_boundary(&self) -> usize {
-        self.n_boundary
-    }
-
     /// Vertices that a hex at `v` may have as neighbours along an edge.
     #[inline]
     pub(crate) fn edge_row(&self, v: u8) -> u128 {
@@ -223,12 +218,6 @@ impl State {
     /// Number of quads met so far; new ones are numbered from here.
     pub(crate) fn n_quads_met(&self) -> usize {
         self.quads.len()
-    }
-
-    /// Whether the quad is open.
-    #[inline]
-    pub(crate) fn is_open(&self, q: u16) -> bool {
-        self.rows[OPEN + usize::from(q) / 128] >> (q % 128) & 1 == 1
     }
 
     /// The dart at the other end of the path of hexes round the edge of an open quad's dart.

@@ -145,7 +145,7 @@ impl Walker {
     pub(crate) fn descend(&mut self, path: u64, ctx: &Context<'_>) -> Result<(), StopReason> {
         self.walked.nodes += 1;
         self.walked.tree_sum = self.walked.tree_sum.wrapping_add(u128::from(mix(path)));
-        if self.walked.nodes % NODES_BETWEEN_STOPS == 0
+        if self.walked.nodes.is_multiple_of(NODES_BETWEEN_STOPS)
             && let Some(reason) = ctx.stop()
         {
             return Err(reason);

@@ -5,7 +5,7 @@ use hexfill_mesh::{
     Context, HexMesh, QuadSurface, VertexId, generate, hex_automorphisms, hex_signature, parse_surface_signature,
     surface_isomorphism, surface_signature,
 };
-use hexfill_prove::{Plan, Problem, Subgroup, Symmetries};
+use hexfill_prove::{Plan, Problem, Subgroup, Symmetries, search_whole};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// All balls with exactly `n` cubes, each with its boundary: vertices renumbered so that the boundary's are 0, 1, ...
@@ -35,7 +35,7 @@ fn balls(n: usize) -> Vec<(QuadSurface, HexMesh)> {
 fn searched(surface: &QuadSurface, most: usize, group: Subgroup) -> BTreeSet<String> {
     let ctx = Context::default();
     let plan = Plan::prepare(Problem::new(surface, most).unwrap().with_group(group), &ctx).unwrap();
-    plan.run_whole(2, &ctx).unwrap().meshes.into_keys().collect()
+    search_whole(&plan, 2, &ctx).unwrap().meshes.into_keys().collect()
 }
 
 /// Every boundary of a ball of at most `most` cubes: the search lists exactly the balls enumerated. Every other small sphere: none.

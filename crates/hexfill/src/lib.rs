@@ -91,6 +91,7 @@ pub use simplify::{SimplifiedData, SimplifyError, default_balls, simplify};
 pub use threads::{MAX_THREADS, ThreadsError, with_threads};
 pub use {
     hexfill_check as check, hexfill_construct as construct, hexfill_doctor as diagnosis, hexfill_embed as embed,
-    hexfill_enumerate as enumerate, hexfill_io as io, hexfill_mesh as mesh, hexfill_search as search,
+    hexfill_enumerate as enumerate, hexfill_io as io, hexfill_ledger as ledger, hexfill_mesh as mesh,
+    hexfill_prove as prove, hexfill_search as search,
     hexfill_shell as shell, hexfill_view as view,
 };

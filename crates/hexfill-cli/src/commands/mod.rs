@@ -13,5 +13,6 @@ mod fill_regions;
 pub mod gallery;
 pub mod info;
 pub mod man;
+pub mod search;
 pub mod simplify;
 pub mod view;
