@@ -28,7 +28,7 @@ pub enum ProveError {
         hexes: Vec<[u32; 8]>,
     },
     /// The work was stopped.
-    #[error("stopped before the end: {reason:?}")]
+    #[error("stopped before the end: {reason}")]
     Stopped {
         /// Why.
         reason: hexfill_mesh::StopReason,

@@ -1,7 +1,7 @@
 //! Level 3: the boundary against the prescribed surface, and the components of the boundary with their genus.
 
+use super::boundary_quad::BoundaryQuad;
 use super::parity::ParityForest;
-use super::star::BoundaryQuad;
 use super::stars::Stars;
 use crate::report::{BoundaryPart, Findings, Offender, SurfaceSense};
 use crate::rule::Rule;

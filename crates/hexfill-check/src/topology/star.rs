@@ -24,6 +24,7 @@
 use super::parity::ParityForest;
 use crate::report::{Findings, Offender};
 use crate::rule::Rule;
+use crate::topology::boundary_quad::BoundaryQuad;
 use hexfill_mesh::cube;
 
 /// For each corner: its three neighbours (right-handed), then the corners opposite in the quad spanned by neighbours
@@ -46,13 +47,6 @@ pub(crate) fn corner_table() -> [[usize; 7]; 8] {
             cube::corner_at(far[0], far[1], far[2]),
         ]
     })
-}
-
-/// A quad in exactly one hex, as a cycle that is counter-clockwise seen from outside, smallest vertex first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct BoundaryQuad {
-    pub(crate) cycle: [u32; 4],
-    pub(crate) hex: u32,
 }
 
 /// What the stars of a range of vertices add up to.

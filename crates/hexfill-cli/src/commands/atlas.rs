@@ -4,7 +4,7 @@ use crate::console::Console;
 use crate::exit::Exit;
 use crate::files;
 use anyhow::bail;
-use hexfill::search::{Atlas, Cavity, GrowOptions, GrowthLog, MAX_CAP, MAX_QUADS};
+use hexfill::unstable::search::{Atlas, Cavity, GrowOptions, GrowthLog, MAX_CAP, MAX_QUADS};
 use hexfill::{Context, StopReason};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -75,7 +75,7 @@ struct BuildReport {
     /// Classes left out in this run to stay within the memory limit.
     thinned: u64,
     exhausted: bool,
-    stopped: Option<&'static str>,
+    stopped: Option<StopReason>,
 }
 
 /// Runs the subcommand.
@@ -154,7 +154,7 @@ fn build(path: &Path, options: GrowOptions, levels: u32, console: &Console, ctx:
         memory_bytes: growth.memory(),
         thinned,
         exhausted: growth.is_exhausted(),
-        stopped: stopped.map(stop_word),
+        stopped,
     };
     if console.json {
         console.print_json(&report)?;
@@ -181,16 +181,6 @@ fn build(path: &Path, options: GrowOptions, levels: u32, console: &Console, ctx:
         None => {}
     }
     Ok(Exit::of_stop(stopped.unwrap_or(StopReason::Finished), Exit::Done))
-}
-
-/// A stop reason as one word for JSON.
-pub fn stop_word(stop: StopReason) -> &'static str {
-    match stop {
-        StopReason::Finished => "finished",
-        StopReason::Cancelled => "cancelled",
-        StopReason::TimeLimit => "time-limit",
-        StopReason::MemoryLimit => "memory-limit",
-    }
 }
 
 #[derive(Serialize)]
@@ -239,7 +229,7 @@ struct LookupRow {
 
 fn lookup(surface: &str, atlas: &Atlas, console: &Console) -> anyhow::Result<Exit> {
     let problem = files::load_problem(surface, &files::InputArgs::default())?;
-    let Some((cavity, _)) = Cavity::from_surface(&problem.surface) else {
+    let Some((cavity, _)) = Cavity::from_surface(problem.surface()) else {
         bail!("{surface} is not one sphere of at most {MAX_QUADS} quads; the atlas knows no other surfaces");
     };
     let rows: Vec<LookupRow> = atlas

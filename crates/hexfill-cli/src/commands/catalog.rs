@@ -51,13 +51,13 @@ fn describe(entry: &Entry) -> anyhow::Result<Shown> {
     Ok(Shown {
         name,
         title: entry.title,
-        quads: problem.surface.n_quads(),
-        vertices: problem.surface.n_vertices(),
-        coordinates: problem.points.is_some(),
+        quads: problem.surface().n_quads(),
+        vertices: problem.surface().n_vertices(),
+        coordinates: problem.points().is_some(),
         source: entry.source,
         best: entry.best,
         mesh_hexes: entry.best_mesh().map(|m| m.hexes.len()),
-        signature: hexfill::mesh::surface_signature(&problem.surface),
+        signature: hexfill::mesh::surface_signature(problem.surface()),
     })
 }
 

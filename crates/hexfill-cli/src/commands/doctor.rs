@@ -130,11 +130,7 @@ fn print(name: &str, diagnosis: &Diagnosis, console: &Console) -> anyhow::Result
         limits.lines().into_iter().try_for_each(|line| console.print(line))?;
     }
     if let Some(existence) = &diagnosis.existence {
-        console.print(match existence.hex_mesh {
-            "exists" => format!("hex mesh: exists ({})", existence.because),
-            "none" => format!("hex mesh: none exists: {}", existence.because),
-            _ => format!("hex mesh: not known: {}", existence.because),
-        })?;
+        console.print(existence.to_string())?;
     }
     console.print(if diagnosis.can_be_filled {
         "`hexfill fill` takes it as it is"

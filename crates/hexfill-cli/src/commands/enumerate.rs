@@ -5,7 +5,7 @@ use crate::console::Console;
 use crate::exit::Exit;
 use anyhow::{Context as _, bail};
 use hexfill::Context;
-use hexfill::enumerate::{
+use hexfill::unstable::enumerate::{
     Boundary, Chunk, Code, Complex, EnumerateError, Filter, Found, Header, LevelOptions, ListFormat, Params, Plan,
     Rule, Selection, Tally, Target, Wanted, all_levels, canonical, chunks_of_part, default_chunks, histograms, line,
     merge, mirror_lines, parse_range, read_ledgers, run_checkpointed, run_in_order, shape, strict_violations, table,
@@ -362,7 +362,7 @@ fn merge_folder(
     Ok(Exit::Done)
 }
 
-fn report_merged(merged: &hexfill::enumerate::Merged, console: &Console) -> anyhow::Result<()> {
+fn report_merged(merged: &hexfill::unstable::enumerate::Merged, console: &Console) -> anyhow::Result<()> {
     let tally = merged.tally();
     let hits: Vec<_> = merged.records.values().flat_map(|r| r.targets.clone()).collect();
     if console.json {

@@ -3,9 +3,9 @@
 use crate::console::Console;
 use crate::files;
 use anyhow::bail;
-use hexfill::enumerate::{Boundary, Code, EnumerateError, Params, canonical, shape};
 use hexfill::mesh::{QuadSurface, hex_signature};
-use hexfill::view::{GalleryItem, gallery};
+use hexfill::unstable::enumerate::{Boundary, Code, EnumerateError, Params, canonical, shape};
+use hexfill::unstable::view::{GalleryItem, gallery};
 use std::io::Write as _;
 
 /// More objects than these nobody looks through.

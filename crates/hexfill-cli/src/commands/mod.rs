@@ -9,7 +9,6 @@ pub mod doctor;
 pub mod embed;
 pub mod enumerate;
 pub mod fill;
-mod fill_regions;
 pub mod gallery;
 pub mod info;
 pub mod man;

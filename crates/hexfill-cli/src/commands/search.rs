@@ -6,9 +6,9 @@ use crate::exit::Exit;
 use crate::files;
 use anyhow::{Context as _, bail};
 use hexfill::Context;
-use hexfill::ledger::{Chunk, default_chunks};
+use hexfill::unstable::ledger::{Chunk, default_chunks};
 use hexfill::mesh::hex_signature;
-use hexfill::prove::{Mesh, Plan, Problem, ProveError, Searched, Subgroup, is_shellable, merge, search};
+use hexfill::unstable::prove::{Mesh, Plan, Problem, ProveError, Searched, Subgroup, is_shellable, merge, search};
 use serde_json::json;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -53,8 +53,8 @@ pub struct SearchArgs {
 /// Searches, or adds up what others searched.
 pub fn run(args: &SearchArgs, threads: usize, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
     let started = Instant::now();
-    let surface = files::load_problem(&args.surface, &args.reading)?.surface;
-    let problem = Problem::new(&surface, args.max_hexes.unwrap_or(1))?;
+    let read = files::load_problem(&args.surface, &args.reading)?;
+    let problem = Problem::new(read.surface(), args.max_hexes.unwrap_or(1))?;
     let classes = problem.symmetries().subgroup_classes();
     if args.list_symmetries {
         for (i, &group) in classes.iter().enumerate() {
