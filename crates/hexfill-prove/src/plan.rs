@@ -43,17 +43,20 @@ impl Problem {
     pub fn new(surface: &QuadSurface, max_hexes: usize) -> Result<Self, ProveError> {
         let bad = |why: &str| Err(ProveError::BadSurface { why: why.into() });
         if !surface.is_sphere() || surface.n_used_vertices() != surface.n_vertices() {
-            return bad("it is not one sphere all of whose vertices are used");
+            return bad("it is not one sphere all of whose vertices are used; the doctor says what it is");
         }
         if surface.n_vertices() > 100 {
-            return bad("it has more than 98 quads");
+            return bad("it has more than 98 quads; a proof for so many is out of reach");
+        }
+        if max_hexes == 0 || max_hexes > 120 {
+            return Err(ProveError::BadParameters { why: format!("at most {max_hexes} hexes: 1 to 120 are possible") });
         }
         // Euler: at most 2 H + 1 - Q / 2 interior vertices.
         let most = surface.n_vertices() + 2 * max_hexes + 1 - surface.n_quads() / 2;
-        if max_hexes > 120 || most >= crate::state::MAX_VERTICES {
+        if most >= crate::state::MAX_VERTICES {
             return Err(ProveError::BadParameters {
                 why: format!(
-                    "{max_hexes} hexes may need {most} vertices, fewer than {} are possible",
+                    "{max_hexes} hexes may need {most} vertices, fewer than {} are possible: ask for fewer hexes",
                     crate::state::MAX_VERTICES
                 ),
             });

@@ -4,11 +4,12 @@ use super::enumerate::parse_part;
 use crate::console::Console;
 use crate::exit::Exit;
 use crate::files;
-use anyhow::{Context as _, bail};
-use hexfill::Context;
-use hexfill::unstable::ledger::{Chunk, default_chunks};
+use anyhow::bail;
+use hexfill::mesh::HexMesh;
 use hexfill::mesh::hex_signature;
+use hexfill::unstable::ledger::{Chunk, default_chunks};
 use hexfill::unstable::prove::{Mesh, Plan, Problem, ProveError, Searched, Subgroup, is_shellable, merge, search};
+use hexfill::{Context, StopReason};
 use serde_json::json;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -53,28 +54,18 @@ pub struct SearchArgs {
 /// Searches, or adds up what others searched.
 pub fn run(args: &SearchArgs, threads: usize, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
     let started = Instant::now();
-    let read = files::load_problem(&args.surface, &args.reading)?;
-    let problem = Problem::new(read.surface(), args.max_hexes.unwrap_or(1))?;
+    let input = files::load_problem(&args.surface, &args.reading)?;
+    let problem = Problem::new(input.surface(), args.max_hexes.unwrap_or(1))?;
     let classes = problem.symmetries().subgroup_classes();
     if args.list_symmetries {
-        for (i, &group) in classes.iter().enumerate() {
-            console.print(format!("{i}: {}", problem.symmetries().describe(group)))?;
-        }
-        return Ok(Exit::Done);
+        return list_symmetries(&problem, &classes, console);
     }
     let group = group_of(&args.symmetry, &problem, &classes)?;
     let problem = problem.with_group(group);
-    let stopped = |error: ProveError| match error {
-        ProveError::Stopped { .. } => {
-            let kept = if args.checkpoint.is_some() { "; the same command goes on from the checkpoint" } else { "" };
-            console.say(format!("{error}: nothing is proved{kept}"));
-            Ok(Exit::Stopped)
-        }
-        error => Err(error.into()),
-    };
+    let question = Question::new(args, &problem);
     let plan = match Plan::prepare(problem, ctx) {
-        Ok(plan) => plan,
-        Err(error) => return stopped(error),
+        Err(ProveError::Stopped { reason }) => return stopped(&question, reason, console),
+        plan => plan?,
     };
     let part = args.part.unwrap_or(Chunk { index: 0, of: 1 });
     let chunks = args.chunks.unwrap_or_else(|| default_chunks(part.of));
@@ -83,13 +74,32 @@ pub fn run(args: &SearchArgs, threads: usize, console: &Console, ctx: &Context<'
         folder => search(&plan, part, chunks, folder.as_deref(), threads, ctx),
     };
     let searched = match result {
-        Ok(searched) => searched,
-        Err(error) => return stopped(error),
+        Err(ProveError::Stopped { reason }) => return stopped(&question, reason, console),
+        searched => searched?,
     };
     if searched.dropped_bytes > 0 {
         console.note(format!("a torn last line of {} bytes was dropped from the ledger", searched.dropped_bytes));
     }
-    report(args, &plan, &searched, part, started, console)
+    let answer = Answer::new(question, &plan, &searched, part)?;
+    if console.json {
+        console.print_json(&answer.json(started))?;
+    } else {
+        answer.tell(console)?;
+    }
+    Ok(answer.exit())
+}
+
+/// Prints the classes of subgroups with the numbers `--symmetry` takes.
+fn list_symmetries(problem: &Problem, classes: &[Subgroup], console: &Console) -> anyhow::Result<Exit> {
+    let words: Vec<String> = classes.iter().map(|&group| problem.symmetries().describe(group)).collect();
+    if console.json {
+        console.print_json(&json!({ "json_version": 1, "symmetries": words, "exit_code": Exit::Done as i32 }))?;
+        return Ok(Exit::Done);
+    }
+    for (i, words) in words.iter().enumerate() {
+        console.print(format!("{i}: {words}"))?;
+    }
+    Ok(Exit::Done)
 }
 
 /// The subgroup that `--symmetry` names.
@@ -104,86 +114,154 @@ fn group_of(text: &str, problem: &Problem, classes: &[Subgroup]) -> anyhow::Resu
     }
 }
 
-/// Says what was found and what that proves.
-fn report(
-    args: &SearchArgs,
-    plan: &Plan,
-    searched: &Searched,
-    part: Chunk,
-    started: Instant,
-    console: &Console,
-) -> anyhow::Result<Exit> {
-    let problem = plan.problem();
-    let mut meshes: Vec<Mesh> = searched.outcome.meshes.values().map(|m| problem.in_input_ids(m)).collect();
-    if args.shellable {
-        meshes.retain(is_shellable);
+/// What is asked, in words.
+struct Question<'a> {
+    args: &'a SearchArgs,
+    boundary: String,
+    symmetry: String,
+    class: String,
+    max_hexes: usize,
+}
+
+impl<'a> Question<'a> {
+    fn new(args: &'a SearchArgs, problem: &Problem) -> Self {
+        let symmetry = problem.symmetries().describe(problem.group());
+        let kind = if args.shellable { "shellable hex balls" } else { "hex balls" };
+        let class = match problem.group() {
+            1 => kind.to_owned(),
+            _ => format!("{kind} with symmetry of {symmetry}"),
+        };
+        Self { args, boundary: problem.signature().to_owned(), symmetry, class, max_hexes: problem.max_hexes() }
     }
-    meshes.sort_by_key(|m| m.hexes.len());
-    let mut counts: BTreeMap<usize, usize> = BTreeMap::new();
-    for mesh in &meshes {
-        *counts.entry(mesh.hexes.len()).or_insert(0) += 1;
-    }
-    let whole = part.of == 1;
-    let symmetry = problem.symmetries().describe(problem.group());
-    let kind = if args.shellable { "shellable hex balls" } else { "hex balls" };
-    let class = if problem.group() == 1 { kind.to_owned() } else { format!("{kind} with symmetry of {symmetry}") };
-    let most = problem.max_hexes();
-    let verdict = match (whole, meshes.is_empty()) {
-        (false, _) => format!("part {}/{} done: {} meshes; add up with --merge", part.index, part.of, meshes.len()),
-        (true, true) => format!("exhausted: no mesh with at most {most} hexes in this class ({class})"),
-        (true, false) => {
-            format!("exhausted: {} meshes with at most {most} hexes in this class ({class})", meshes.len())
-        }
-    };
-    let exit = if whole && meshes.is_empty() { Exit::No } else { Exit::Done };
-    let signature = |m: &Mesh| -> anyhow::Result<String> {
-        Ok(hex_signature(&hexfill::mesh::HexMesh::try_new(m.n_vertices, &m.hexes).context("a judged mesh")?)?)
-    };
-    let nodes = searched.outcome.nodes + plan.split_nodes();
+}
+
+/// Says that the search did not come to its end, so that nothing is proved.
+fn stopped(question: &Question<'_>, reason: StopReason, console: &Console) -> anyhow::Result<Exit> {
     if console.json {
-        let listed: Vec<_> =
-            if args.count_all { Vec::new() } else { meshes.iter().map(|m| json!({ "hexes": m.hexes })).collect() };
-        let mut rows = listed;
-        for (row, mesh) in rows.iter_mut().zip(&meshes) {
-            row["signature"] = json!(signature(mesh)?);
-        }
         console.print_json(&json!({
             "json_version": 1,
-            "surface": args.surface,
-            "boundary": problem.signature(),
-            "class": class,
-            "max_hexes": most,
-            "symmetry": symmetry,
-            "shellable": args.shellable,
-            "exhausted": whole,
-            "counts": counts.iter().map(|(hexes, classes)| json!({ "hexes": hexes, "classes": classes })).collect::<Vec<_>>(),
-            "meshes": rows,
-            "nodes": nodes,
-            "tasks": plan.n_tasks(),
-            "chunks": searched.chunks,
-            "chunks_found_done": searched.found_done,
-            "tree_sum": format!("{:032x}", searched.outcome.tree_sum),
-            "hash_sum": format!("{:032x}", searched.outcome.hash_sum()),
-            "cpu_seconds": searched.cpu_nanoseconds as f64 / 1e9,
-            "seconds": started.elapsed().as_secs_f64(),
-            "exit_code": exit as i32,
+            "surface": question.args.surface,
+            "class": question.class,
+            "max_hexes": question.max_hexes,
+            "exhausted": false,
+            "stopped": reason.word(),
+            "exit_code": Exit::Stopped as i32,
         }))?;
-        return Ok(exit);
+    } else {
+        let kept = match question.args.checkpoint {
+            Some(_) => "; the same command goes on from the checkpoint",
+            None => "; with --checkpoint DIR it could go on",
+        };
+        console.say(format!("stopped before the end ({reason}): nothing is proved{kept}"));
     }
-    if !args.count_all {
-        for mesh in &meshes {
-            console.print(signature(mesh)?)?;
+    Ok(Exit::Stopped)
+}
+
+/// What was found.
+struct Answer<'a> {
+    question: Question<'a>,
+    /// In the input's ids, ascending by number of hexes, with signatures.
+    meshes: Vec<(String, Mesh)>,
+    counts: BTreeMap<usize, usize>,
+    part: Chunk,
+    searched: &'a Searched,
+    nodes: u64,
+    tasks: usize,
+}
+
+impl<'a> Answer<'a> {
+    fn new(question: Question<'a>, plan: &Plan, searched: &'a Searched, part: Chunk) -> anyhow::Result<Self> {
+        let mut meshes = Vec::new();
+        for mesh in searched.outcome.meshes.values() {
+            let mesh = plan.problem().in_input_ids(mesh);
+            if !question.args.shellable || is_shellable(&mesh) {
+                meshes.push((hex_signature(&HexMesh::try_new(mesh.n_vertices, &mesh.hexes)?)?, mesh));
+            }
+        }
+        meshes.sort_by(|(a, x), (b, y)| (x.hexes.len(), a).cmp(&(y.hexes.len(), b)));
+        let mut counts = BTreeMap::new();
+        for (_, mesh) in &meshes {
+            *counts.entry(mesh.hexes.len()).or_insert(0) += 1;
+        }
+        let nodes = searched.outcome.nodes + plan.split_nodes();
+        Ok(Self { question, meshes, counts, part, searched, nodes, tasks: plan.n_tasks() })
+    }
+
+    /// Whether all of the tree was searched, not a part of it.
+    fn is_whole(&self) -> bool {
+        self.part.of == 1
+    }
+
+    /// "No" is proved by the whole search alone.
+    fn exit(&self) -> Exit {
+        if self.is_whole() && self.meshes.is_empty() { Exit::No } else { Exit::Done }
+    }
+
+    /// The result in one line.
+    fn verdict(&self) -> String {
+        let Question { class, max_hexes, .. } = &self.question;
+        match (self.is_whole(), self.meshes.len()) {
+            (false, n) => {
+                format!("part {}/{} is done: classes found: {n}; add up with --merge", self.part.index, self.part.of)
+            }
+            (true, 0) => format!("exhausted: no mesh with at most {max_hexes} hexes in this class ({class})"),
+            (true, n) => format!("exhausted: classes with at most {max_hexes} hexes: {n} ({class})"),
         }
     }
-    for (hexes, classes) in &counts {
-        console.say(format!("{hexes} hexes: {classes} classes"));
+
+    fn json(&self, started: Instant) -> serde_json::Value {
+        let listed = if self.question.args.count_all { &[] } else { self.meshes.as_slice() };
+        let meshes: Vec<_> = listed
+            .iter()
+            .map(
+                |(signature, mesh)| json!({ "signature": signature, "vertices": mesh.n_vertices, "hexes": mesh.hexes }),
+            )
+            .collect();
+        let counts: Vec<_> =
+            self.counts.iter().map(|(hexes, classes)| json!({ "hexes": hexes, "classes": classes })).collect();
+        let outcome = &self.searched.outcome;
+        json!({
+            "json_version": 1,
+            "surface": self.question.args.surface,
+            "boundary": self.question.boundary,
+            "class": self.question.class,
+            "max_hexes": self.question.max_hexes,
+            "symmetry": self.question.symmetry,
+            "shellable": self.question.args.shellable,
+            "exhausted": self.is_whole(),
+            "stopped": StopReason::Finished.word(),
+            "counts": counts,
+            "meshes": meshes,
+            "nodes": self.nodes,
+            "tasks": self.tasks,
+            "chunks": self.searched.chunks,
+            "chunks_found_done": self.searched.found_done,
+            "tree_sum": format!("{:032x}", outcome.tree_sum),
+            "hash_sum": format!("{:032x}", outcome.hash_sum()),
+            "cpu_seconds": self.searched.cpu_nanoseconds as f64 / 1e9,
+            "seconds": started.elapsed().as_secs_f64(),
+            "exit_code": self.exit() as i32,
+        })
     }
-    console.print(verdict)?;
-    console.say(format!(
-        "{nodes} nodes, tree sum {:032x}, hash sum {:032x}, processor time {:.1} s",
-        searched.outcome.tree_sum,
-        searched.outcome.hash_sum(),
-        searched.cpu_nanoseconds as f64 / 1e9
-    ));
-    Ok(exit)
+
+    fn tell(&self, console: &Console) -> anyhow::Result<()> {
+        if !self.question.args.count_all {
+            for (signature, _) in &self.meshes {
+                console.print(signature)?;
+            }
+        }
+        for (hexes, classes) in &self.counts {
+            console.print(format!("{hexes} hexes: {classes}"))?;
+        }
+        console.print(self.verdict())?;
+        let outcome = &self.searched.outcome;
+        console.say(format!(
+            "{} nodes, tree sum {:032x}, hash sum {:032x}, processor time {:.1} s",
+            self.nodes,
+            outcome.tree_sum,
+            outcome.hash_sum(),
+            self.searched.cpu_nanoseconds as f64 / 1e9
+        ));
+        Ok(())
+    }
 }
