@@ -8,6 +8,7 @@ use crate::best::budget::Budget;
 use crate::best::choice::{Candidate, Choice, Outcome};
 use crate::best::hopeless::{Hopeless, hopeless};
 use crate::best::no_room::no_room;
+use crate::best::pillows::with_pillows;
 use crate::best::{PlaceOptions, PlacedFill};
 use crate::fill::attempt::Attempt;
 use crate::fill::construct::construct;
@@ -38,6 +39,9 @@ const STARTS: u32 = 2;
 
 /// Surfaces of more quads are constructed only if nothing else filled them.
 const MOST_CONSTRUCTED: usize = 1000;
+
+/// Pillows are put into meshes of surfaces of at most so many quads.
+const MOST_PILLOWED: usize = 160;
 
 /// The place of a mesh in the order; smaller is better.
 type Rank = (u8, f64);
@@ -87,6 +91,7 @@ pub(crate) fn fill_best(
         result,
         best: None,
         seen: Vec::new(),
+        tangled: None,
         hopeless: None,
     };
     trial.look_up()?;
@@ -114,8 +119,18 @@ struct Trial<'a> {
     best: Option<(Rank, Filled, Placed)>,
     /// The meshes considered.
     seen: Vec<Candidate>,
+    /// The shelled mesh nearest to valid positions, while none has any: bad corners first, then hexes.
+    tangled: Option<Tangled>,
     /// Why no work is spent beyond the first trials, once that was asked.
     hopeless: Option<Option<Hopeless>>,
+}
+
+/// A shelled mesh whose embedding failed.
+struct Tangled {
+    /// Hexes with a corner that is not positive.
+    bad: usize,
+    filled: Filled,
+    points: Vec<[f64; 3]>,
 }
 
 impl<'a> Trial<'a> {
@@ -156,7 +171,11 @@ impl<'a> Trial<'a> {
 
     /// Asks the other engines where no mesh is good yet. Says why none can be valid, if that is known.
     fn go_on(&mut self) -> Result<Option<String>, FillError> {
-        if self.options.strategy != Strategy::Auto || self.is_enough() || self.ctx.stop().is_some() {
+        if self.is_enough() || self.ctx.stop().is_some() {
+            return Ok(None);
+        }
+        if self.options.strategy != Strategy::Auto {
+            self.put_pillows()?;
             return Ok(None);
         }
         let none_valid = no_room(&self.problem.surface, self.boundary).map(|why| format!("none can be valid: {why}"));
@@ -170,6 +189,9 @@ impl<'a> Trial<'a> {
             }
             self.look_at_more_fillings()?;
         }
+        if why_none.is_none() {
+            self.put_pillows()?;
+        }
         // A construction has some 46 hexes a quad: where shelling left a few of its own invalid, it is tried on small surfaces only.
         let worth_trying = match self.class() {
             None => true,
@@ -181,6 +203,25 @@ impl<'a> Trial<'a> {
             self.consider_found()?;
         }
         Ok(why_none)
+    }
+
+    /// Puts pillows into the shelled mesh that is nearest to valid positions, if none has any. Only on small surfaces: the work grows with the mesh.
+    fn put_pillows(&mut self) -> Result<(), FillError> {
+        let surface = &self.problem.surface;
+        let is_worth = self.class() == Some(2) && surface.n_quads() <= MOST_PILLOWED && self.ctx.stop().is_none();
+        let Some(limits) = self.budget.pillows.filter(|_| is_worth && self.options.layers.is_none()) else {
+            return Ok(());
+        };
+        let Some(Tangled { filled, points, .. }) = self.tangled.take() else { return Ok(()) };
+        let made = with_pillows(&filled.mesh, &points, surface, limits, &self.early);
+        self.result.tried.push(Attempt::Pillows { found: made.is_some() });
+        let Some((mesh, points)) = made.filter(|(mesh, _)| mesh.n_hexes() as u64 <= u64::from(self.options.max_hexes))
+        else {
+            return Ok(());
+        };
+        verify(surface, &mesh, filled.route)?;
+        let pillowed = Filled { start: Some(points), ..filled.changed("pillows between", mesh) };
+        self.consider_from(pillowed, false)
     }
 
     /// Constructs the surface if the work was stopped before there was a mesh.
@@ -252,8 +293,14 @@ impl<'a> Trial<'a> {
         std::mem::take(&mut self.result.meshes).into_iter().try_for_each(|filled| self.consider(filled))
     }
 
-    /// Embeds a mesh and keeps it if it is the best.
-    fn consider(&mut self, mut filled: Filled) -> Result<(), FillError> {
+    /// Embeds a mesh and keeps it if it is the best. The start positions of a shelling are a guess.
+    fn consider(&mut self, filled: Filled) -> Result<(), FillError> {
+        let is_guess = filled.route == Route::Shelling;
+        self.consider_from(filled, is_guess)
+    }
+
+    /// [`Self::consider`], where start positions are a guess, to be smoothed first, or what to begin with.
+    fn consider_from(&mut self, mut filled: Filled, is_guess: bool) -> Result<(), FillError> {
         let prefer = self.options.prefer;
         if self.options.layers.is_some() && filled.route != Route::Shelling {
             // Layers are cut out of a pillow, which shelling puts by itself.
@@ -285,7 +332,7 @@ impl<'a> Trial<'a> {
             let mut one = *self.embed;
             one.starts = one.starts.max(1);
             one.programs = one.programs.min(self.budget.screening);
-            one.smooth_start = true;
+            one.smooth_start = is_guess;
             let placed = place_as_it_is(&filled, self.boundary, Some(&one), &self.limited());
             self.placed_from_coarse(&filled, placed, one)
         } else {
@@ -299,6 +346,13 @@ impl<'a> Trial<'a> {
             filled = turned;
             placed
         };
+        if is_shelled && !placed.is_certified() {
+            let bad = placed.cells.iter().filter(|c| c.corner_scaled_jacobian <= 0.0).count();
+            let least = self.tangled.as_ref().map(|t| (t.bad, t.filled.mesh.n_hexes()));
+            if least.is_none_or(|least| (bad, filled.mesh.n_hexes()) < least) {
+                self.tangled = Some(Tangled { bad, filled: filled.clone(), points: placed.points.clone() });
+            }
+        }
         let rank = rank(&filled, &placed, prefer);
         let outcome = if placed.is_certified() { Outcome::Certified(placed.worst()) } else { Outcome::NotCertified };
         self.seen.push(Candidate::new(&filled, outcome));

@@ -9,6 +9,7 @@ pub(crate) mod choice;
 mod choose;
 mod hopeless;
 mod no_room;
+mod pillows;
 
 use crate::fill::attempt::Attempt;
 use crate::fill::error::{FillError, check_fillable};

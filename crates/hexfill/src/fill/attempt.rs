@@ -52,6 +52,11 @@ pub enum Attempt {
         /// Fewest coarse quads that a sweep left; `usize::MAX` if it was stopped.
         left: usize,
     },
+    /// Pillows between the stages of a shelled mesh without valid positions.
+    Pillows {
+        /// Whether it has some then.
+        found: bool,
+    },
     /// The construction.
     Construction(Box<Report>),
     /// A construction that the context stopped.
@@ -89,6 +94,8 @@ impl fmt::Display for Attempt {
                     (n, _) => write!(f, "{n} meshes"),
                 }
             }
+            Self::Pillows { found: true } => write!(f, "pillows between stages of the shelling"),
+            Self::Pillows { found: false } => write!(f, "pillows between stages of the shelling, in vain"),
             Self::Construction(report) => report.fmt(f),
             Self::ConstructionStopped => write!(f, "construction, stopped before the mesh was complete"),
             Self::NoConstruction(why) => write!(f, "no construction: {why}"),

@@ -88,7 +88,7 @@ pub(crate) const SIGNATURE_LIMIT: usize = 20_000;
 /// let info = describe_surface(spindle.surface(), spindle.points());
 /// assert_eq!((info.chords.len(), info.chords[0].self_crossings), (1, 8));
 /// assert_eq!(info.existence.hex_mesh, "exists");
-/// assert!(info.limits.is_some_and(|limits| limits.one_edge < 0.5));
+/// assert!(info.limits.is_some_and(|limits| limits.one_edge < 0.52));
 /// # Ok::<(), hexfill::ProblemError>(())
 /// ```
 pub fn describe_surface(surface: &QuadSurface, points: Option<&[[f64; 3]]>) -> SurfaceInfo {
