@@ -1,5 +1,6 @@
 //! Exit codes, signals and the quiet end of a broken pipe.
 
+use hexfill::unstable::prove::ProveError;
 use hexfill::{FillError, SimplifyError, StopReason};
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -36,7 +37,8 @@ impl Exit {
 pub(crate) fn code_of(error: &anyhow::Error) -> Exit {
     let fill = matches!(error.downcast_ref(), Some(FillError::Refused { .. }));
     let simplify = matches!(error.downcast_ref(), Some(SimplifyError::Refused { .. }));
-    if fill || simplify { Exit::Internal } else { Exit::Usage }
+    let search = matches!(error.downcast_ref(), Some(ProveError::Refused { .. }));
+    if fill || simplify || search { Exit::Internal } else { Exit::Usage }
 }
 
 /// Whether the reader of our output went away.

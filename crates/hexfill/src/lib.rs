@@ -141,7 +141,8 @@ pub use {hexfill_io as io, hexfill_mesh as mesh};
 pub mod unstable {
     pub use {
         hexfill_check as check, hexfill_construct as construct, hexfill_doctor as diagnosis, hexfill_embed as embed,
-        hexfill_enumerate as enumerate, hexfill_search as search, hexfill_shell as shell, hexfill_view as view,
+        hexfill_enumerate as enumerate, hexfill_ledger as ledger, hexfill_prove as prove, hexfill_search as search,
+        hexfill_shell as shell, hexfill_view as view,
     };
 }
 

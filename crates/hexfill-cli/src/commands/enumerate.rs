@@ -127,7 +127,7 @@ enum Engine {
     Augment,
 }
 
-fn parse_part(text: &str) -> Result<Chunk, String> {
+pub(super) fn parse_part(text: &str) -> Result<Chunk, String> {
     let part = text.split_once('/').and_then(|(r, m)| Some(Chunk { index: r.parse().ok()?, of: m.parse().ok()? }));
     match part {
         Some(part) if part.index < part.of => Ok(part),

@@ -12,5 +12,6 @@ pub(crate) mod fill;
 pub(crate) mod gallery;
 pub(crate) mod info;
 pub(crate) mod man;
+pub(crate) mod search;
 pub(crate) mod simplify;
 pub(crate) mod view;
