@@ -20,7 +20,7 @@ use hexfill_mesh::{QuadSurface, bipartition};
 use std::sync::OnceLock;
 
 /// Most vertices of a mesh, so that a row of the pair table is a `u128`.
-pub const MAX_VERTICES: usize = 128;
+pub(crate) const MAX_VERTICES: usize = 128;
 /// Most quads a state meets.
 pub(crate) const MAX_QUADS: usize = 1024;
 const NO_QUAD: u16 = u16::MAX;

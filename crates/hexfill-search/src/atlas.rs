@@ -38,23 +38,43 @@ pub struct Atlas {
 pub struct AtlasStats {
     /// States in all, steps included.
     pub states: usize,
-    /// Per number of quads: classes with a filling, and the sum of their smallest numbers of hexes.
+    /// Per number of quads.
     pub classes: std::collections::BTreeMap<usize, ClassStats>,
     /// Number of levels.
     pub levels: usize,
 }
 
-/// Counts over the classes with one number of quads.
+/// Counts over the classes with one number of quads, of the smallest filling of each.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ClassStats {
     /// How many classes have a filling.
     pub classes: usize,
-    /// Fewest hexes of any of them.
+    /// Hexes.
+    pub hexes: Spread,
+    /// Interior vertices.
+    pub interior: Spread,
+}
+
+/// The spread of a number over some classes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Spread {
+    /// The smallest.
     pub fewest: u32,
-    /// Most hexes of a smallest filling.
+    /// The one in the middle; the smaller of two.
+    pub median: u32,
+    /// The largest.
     pub most: u32,
-    /// Sum of the hexes of the smallest fillings.
-    pub hexes: u64,
+    /// Their sum.
+    pub sum: u64,
+}
+
+impl Spread {
+    fn of(mut values: Vec<u32>) -> Self {
+        values.sort_unstable();
+        let at = |i: usize| values.get(i).copied().unwrap_or(0);
+        let last = values.len().saturating_sub(1);
+        Self { fewest: at(0), median: at(last / 2), most: at(last), sum: values.iter().map(|&v| u64::from(v)).sum() }
+    }
 }
 
 impl Atlas {
@@ -144,11 +164,16 @@ impl Atlas {
 
     /// Number of boundary quads of every state.
     fn quads(&self) -> Vec<u8> {
-        let mut quads = vec![6u8; self.n_states()];
+        self.along_the_flips(6, |flip| flip.kind.gain())
+    }
+
+    /// A number of every state that starts with that of the cube and changes with each flip.
+    fn along_the_flips(&self, cube: u8, gain: impl Fn(Flip) -> i32) -> Vec<u8> {
+        let mut values = vec![cube; self.n_states()];
         for s in 1..self.n_states() {
-            quads[s] = (i32::from(quads[self.parents[s] as usize]) + self.flips[s].kind.gain()) as u8;
+            values[s] = (i32::from(values[self.parents[s] as usize]) + gain(self.flips[s])) as u8;
         }
-        quads
+        values
     }
 
     /// A smaller atlas: the states of classes for which `keep(quads, hexes)` holds, the first `width` per class, and the
@@ -196,16 +221,21 @@ impl Atlas {
     /// Counts by number of boundary quads.
     pub fn stats(&self) -> AtlasStats {
         let quads = self.quads();
-        let mut classes = std::collections::BTreeMap::<usize, ClassStats>::new();
+        let vertices = self.along_the_flips(8, |flip| flip.kind.new_vertices());
+        let mut smallest = std::collections::BTreeMap::<usize, (Vec<u32>, Vec<u32>)>::new();
         for class in self.index.classes() {
-            let smallest = state_of(class[0]);
-            let hexes = self.hexes_of(smallest);
-            let entry = classes.entry(usize::from(quads[smallest as usize])).or_default();
-            entry.fewest = if entry.classes == 0 { hexes } else { entry.fewest.min(hexes) };
-            entry.most = entry.most.max(hexes);
-            entry.hexes += u64::from(hexes);
-            entry.classes += 1;
+            let state = state_of(class[0]);
+            let n = quads[state as usize];
+            let (hexes, interior) = smallest.entry(usize::from(n)).or_default();
+            hexes.push(self.hexes_of(state));
+            interior.push(u32::from(vertices[state as usize] - (n + 2)));
         }
+        let spread = |(hexes, interior): (Vec<u32>, Vec<u32>)| ClassStats {
+            classes: hexes.len(),
+            hexes: Spread::of(hexes),
+            interior: Spread::of(interior),
+        };
+        let classes = smallest.into_iter().map(|(quads, both)| (quads, spread(both))).collect();
         AtlasStats { states: self.n_states(), classes, levels: self.level_starts.len() }
     }
 }

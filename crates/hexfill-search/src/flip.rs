@@ -45,6 +45,11 @@ impl FlipKind {
     pub const fn gain(self) -> i32 {
         [4, 2, 0, 0, -2, -4][self as usize]
     }
+
+    /// How many vertices the hex brings.
+    pub const fn new_vertices(self) -> i32 {
+        [4, 2, 1, 0, 0, 0][self as usize]
+    }
 }
 
 /// A flip of a given cavity: its kind and the dart of the cavity it starts from. Two bytes in a file.

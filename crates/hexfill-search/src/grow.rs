@@ -5,7 +5,8 @@
 //! hexes. A state is dominated, and dropped, if its class was reached with no more hexes and a subset of its blocked
 //! pairs. Per class at most `width` states are kept, but one with fewer blocked pairs than all of them always enters:
 //! without that rule the growth dies out early, the blocked pairs matter. With unlimited width every Pareto state is
-//! kept and "nothing below H hexes with cavities of at most C quads" is a theorem.
+//! kept and "nothing below H hexes with cavities of at most C quads" is a theorem. A beam gives that up for reach: with only
+//! the least blocked classes of each size kept, larger cavities can be afforded, and the fillings get smaller.
 //!
 //! Determinism: the children of a level are gathered in sets whose content does not depend on their order of arrival,
 //! then numbered by class hash. Any number of threads gives the same atlas.
@@ -43,7 +44,7 @@ pub(crate) fn cube_class() -> ClassHash {
 /// Blocked pairs of a canonical cavity, packed: pair (a, b), a < b, is bit `b (b - 1) / 2 + a`.
 pub(crate) type PackedPairs = [u64; PAIR_WORDS];
 
-fn pack(pairs: &Pairs, n_vertices: usize) -> PackedPairs {
+pub(crate) fn pack(pairs: &Pairs, n_vertices: usize) -> PackedPairs {
     let mut packed = [0; PAIR_WORDS];
     for (b, row) in pairs.iter().enumerate().take(n_vertices).skip(1) {
         let row = row & ((1 << b) - 1);
@@ -162,12 +163,14 @@ pub struct LevelReport {
 pub struct Growth {
     pub(crate) options: GrowOptions,
     pub(crate) states: Vec<State>,
-    blocked: Vec<PackedPairs>,
+    pub(crate) blocked: Vec<PackedPairs>,
     /// Per shard: the newest state of each class.
     newest: Vec<FxHashMap<ClassHash, u32>>,
     /// First state of each level, level 1 first.
     pub(crate) level_starts: Vec<u32>,
     frontier: Vec<FrontierState>,
+    /// Most classes to accept on a level, of each number of quads.
+    beam: Option<usize>,
 }
 
 fn shard_of(class: ClassHash) -> usize {
@@ -195,7 +198,15 @@ impl Growth {
             newest,
             level_starts: vec![0],
             frontier: vec![FrontierState { id: 0, n_quads: 6, code, blocked }],
+            beam: None,
         }
+    }
+
+    /// From now on, keeps on each level only so many classes of each number of quads: those with the fewest blocked pairs.
+    #[must_use]
+    pub fn with_beam(mut self, beam: usize) -> Self {
+        self.beam = Some(beam);
+        self
     }
 
     /// Number of hexes of the balls on the newest level.
@@ -234,6 +245,14 @@ impl Growth {
             at = (previous != u32::MAX).then_some(previous);
             Some(now)
         })
+    }
+
+    /// Adds a state of a class beside the levels.
+    pub(crate) fn push(&mut self, mut state: State, class: ClassHash, blocked: PackedPairs) {
+        let id = self.states.len() as u32;
+        state.previous = self.newest[shard_of(class)].insert(class, id).unwrap_or(u32::MAX);
+        self.states.push(state);
+        self.blocked.push(blocked);
     }
 
     /// Every class with its newest state, in no particular order.
@@ -430,7 +449,7 @@ impl Growth {
     fn settle(&mut self, pending: Vec<FxHashMap<ClassHash, PendingClass>>, memory_limit: Option<u64>) -> Option<u64> {
         let mut classes: Vec<(ClassHash, PendingClass)> = pending.into_iter().flatten().collect();
         classes.par_sort_unstable_by_key(|(class, _)| *class);
-        let mut thinned = 0;
+        let mut thinned = self.beam.map_or(0, |beam| keep_the_least_blocked(&mut classes, beam));
         if let Some(limit) = memory_limit {
             let per_class = size_of::<State>() + size_of::<PackedPairs>() + 2 * size_of::<(ClassHash, u32)>();
             let coming = |n: usize| self.memory() + (n * (per_class + size_of::<FrontierState>())) as u64;
@@ -474,6 +493,20 @@ impl Growth {
         }
         Some(thinned)
     }
+}
+
+/// Drops all but the `beam` classes of each size with the fewest blocked pairs, the rest in order. Returns how many went.
+fn keep_the_least_blocked(classes: &mut Vec<(ClassHash, PendingClass)>, beam: usize) -> u64 {
+    let before = classes.len();
+    for quads in (6..=MAX_CAP as u8).step_by(2) {
+        let mut ranks: Vec<(u16, ClassHash)> =
+            classes.iter().filter(|(_, p)| p.n_quads == quads).map(|(c, p)| (p.candidates[0].n_blocked, *c)).collect();
+        if ranks.len() > beam {
+            let first_out = *ranks.select_nth_unstable(beam).1;
+            classes.retain(|(class, p)| p.n_quads != quads || (p.candidates[0].n_blocked, *class) < first_out);
+        }
+    }
+    (before - classes.len()) as u64
 }
 
 impl PendingClass {

@@ -283,9 +283,9 @@ impl<'a> StarJudge<'a> {
         }
         self.sums.quads += 1;
         let hexes: Vec<u32> = same.iter().take(10).map(|e| hex_of(e.1, codes)).collect();
-        self.sums.findings.add(Rule::QuadInThreeHexes, || {
-            Offender::at(&hexes, &[v, x, w, y]).note(format!("{} hexes", same.len()))
-        });
+        self.sums
+            .findings
+            .add(Rule::QuadInThreeHexes, || Offender::at(&hexes, &[v, x, w, y]).note(format!("{} hexes", same.len())));
         // One part all the same; its orientation is then not judged.
         for &(_, e) in &same[1..] {
             self.forest.union(hex_of(same[0].1, codes), hex_of(e, codes), false);
@@ -294,15 +294,7 @@ impl<'a> StarJudge<'a> {
 
     /// Names what is wrong with the kinds of the pair `{v, w}`, each time with two hexes that disagree.
     #[cold]
-    fn name_kinds(
-        &mut self,
-        v: u32,
-        w: u32,
-        kinds: &Kinds,
-        quads: u32,
-        group: std::ops::Range<usize>,
-        codes: &[u32],
-    ) {
+    fn name_kinds(&mut self, v: u32, w: u32, kinds: &Kinds, quads: u32, group: std::ops::Range<usize>, codes: &[u32]) {
         let &Kinds { edge, face: [face, _], body, .. } = kinds;
         let entries = &self.entries[group];
         let other_face = || {

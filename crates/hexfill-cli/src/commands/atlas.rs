@@ -1,10 +1,12 @@
-//! `hexfill atlas build|stats|lookup|prune`.
+//! `hexfill atlas build|complete|stats|lookup|prune`.
 
 use crate::console::Console;
 use crate::exit::Exit;
 use crate::files;
 use anyhow::bail;
-use hexfill::unstable::search::{Atlas, Cavity, GrowOptions, GrowthLog, MAX_CAP, MAX_QUADS};
+use hexfill::unstable::search::{
+    Atlas, Cavity, CompleteOptions, GrowOptions, GrowthLog, MAX_CAP, MAX_QUADS, Spread, complete,
+};
 use hexfill::{Context, StopReason};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -33,6 +35,38 @@ enum AtlasCommand {
         /// States to keep per class (0: every Pareto state, which proves lower bounds).
         #[arg(long, default_value_t = 1)]
         width: u32,
+        /// Keep on each level only so many classes of each size, those with the fewest blocked pairs (then it proves no bound).
+        #[arg(long, value_name = "N")]
+        beam: Option<usize>,
+    },
+    /// Make an atlas of every sphere of at most so many quads: grow FILE as `build` does, then search backward for what is missing.
+    Complete {
+        /// The growth to go on with; started if it does not exist.
+        file: PathBuf,
+        /// The packed atlas to write, one filling a class.
+        #[arg(short, long, value_name = "FILE")]
+        output: String,
+        /// Most quads a ball's boundary may have on the way.
+        #[arg(long, default_value_t = 26, value_parser = clap::value_parser!(u64).range(6..=MAX_CAP as u64))]
+        cap: u64,
+        /// Grow to this many hexes.
+        #[arg(long, default_value_t = 56)]
+        levels: u32,
+        /// Keep on each level only so many classes of each size.
+        #[arg(long, default_value_t = 50_000, value_name = "N")]
+        beam: usize,
+        /// Every 3-connected sphere of at most this many quads gets a filling.
+        #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u64).range(6..=20))]
+        max_quads: u64,
+        /// A filling with more hexes than this is looked at again with each effort.
+        #[arg(long, default_value_t = 56)]
+        max_hexes: u32,
+        /// Searches backward to make, each wider (and many times slower) than the one before.
+        #[arg(long, default_value_t = 3)]
+        efforts: usize,
+        /// The classes of this atlas stay, with no more hexes than there [default: the embedded one].
+        #[arg(long, value_name = "FILE")]
+        keep: Option<PathBuf>,
     },
     /// Count what an atlas holds.
     Stats {
@@ -81,9 +115,19 @@ struct BuildReport {
 /// Runs the subcommand.
 pub(crate) fn run(args: &AtlasArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
     match &args.command {
-        AtlasCommand::Build { output, cap, levels, width } => {
+        AtlasCommand::Build { output, cap, levels, width, beam } => {
             let width = if *width == 0 { u32::MAX } else { *width };
-            build(output, GrowOptions { cap: *cap as usize, width }, *levels, console, ctx)
+            build(output, GrowOptions { cap: *cap as usize, width }, *beam, *levels, console, ctx)
+        }
+        AtlasCommand::Complete { file, output, cap, levels, beam, max_quads, max_hexes, efforts, keep } => {
+            files::check_folder(output)?;
+            files::check_distinct(&[&file.to_string_lossy(), output])?;
+            let grown = build(file, GrowOptions { cap: *cap as usize, width: 1 }, Some(*beam), *levels, console, ctx)?;
+            if grown != Exit::Done {
+                return Ok(grown);
+            }
+            let options = CompleteOptions { max_quads: *max_quads as usize, max_hexes: *max_hexes, efforts: *efforts };
+            complete_atlas(file, output, keep.as_deref(), &options, console, ctx)
         }
         AtlasCommand::Stats { file } => {
             let read;
@@ -117,8 +161,80 @@ pub(crate) fn run(args: &AtlasArgs, console: &Console, ctx: &Context<'_>) -> any
     }
 }
 
-fn build(path: &Path, options: GrowOptions, levels: u32, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
+#[derive(Serialize)]
+struct CompletionReport {
+    file: String,
+    states: usize,
+    bytes: u64,
+    /// Classes that were to get a filling; of them: grown, better in the atlas to keep, found backward, with more hexes
+    /// than asked for, without a filling.
+    classes: usize,
+    grown: usize,
+    kept: usize,
+    found: usize,
+    large: usize,
+    missing: usize,
+    stopped: Option<StopReason>,
+}
+
+fn complete_atlas(
+    file: &Path,
+    output: &str,
+    keep: Option<&Path>,
+    options: &CompleteOptions,
+    console: &Console,
+    ctx: &Context<'_>,
+) -> anyhow::Result<Exit> {
+    let kept = keep.map(Atlas::read_path).transpose()?;
+    let kept = kept.as_ref().unwrap_or_else(|| Atlas::embedded());
+    let Some((atlas, done)) = complete(&Atlas::read_path(file)?, kept, options, ctx) else {
+        bail!("{} holds flips that are not legal; delete it and build it again", file.display());
+    };
+    files::write_file(output, |out| atlas.write_packed(out))?;
+    let report = CompletionReport {
+        file: output.to_owned(),
+        states: atlas.n_states(),
+        bytes: std::fs::metadata(output)?.len(),
+        classes: done.targets,
+        grown: done.grown,
+        kept: done.kept,
+        found: done.found,
+        large: done.large,
+        missing: done.missing,
+        stopped: (done.stop != StopReason::Finished).then_some(done.stop),
+    };
+    if console.json {
+        console.print_json(&report)?;
+    } else {
+        console.print(format!(
+            "{output}: {} of {} spheres of at most {} quads filled, {} of them with more than {} hexes",
+            report.classes - report.missing,
+            report.classes,
+            options.max_quads,
+            report.large,
+            options.max_hexes
+        ))?;
+        console.print(format!(
+            "{} grown, {} new or smaller in the atlas to keep, {} new by searching backward",
+            report.grown, report.kept, report.found
+        ))?;
+        console.print(format!("{} states, {} bytes", report.states, report.bytes))?;
+    }
+    Ok(Exit::of_stop(done.stop, if report.missing + report.large == 0 { Exit::Done } else { Exit::No }))
+}
+
+fn build(
+    path: &Path,
+    options: GrowOptions,
+    beam: Option<usize>,
+    levels: u32,
+    console: &Console,
+    ctx: &Context<'_>,
+) -> anyhow::Result<Exit> {
     let (mut log, mut growth) = GrowthLog::open(path, options)?;
+    if let Some(beam) = beam {
+        growth = growth.with_beam(beam);
+    }
     if growth.level() > 1 {
         console.say(format!("going on from level {} ({} states)", growth.level(), growth.n_states()));
     }
@@ -169,8 +285,9 @@ fn build(path: &Path, options: GrowOptions, levels: u32, console: &Console, ctx:
         ))?;
     }
     if thinned > 0 {
-        console
-            .note(format!("{thinned} classes were left out to stay within --memory-limit: this atlas proves no bound"));
+        console.note(format!(
+            "{thinned} classes were left out to stay within the beam or the memory limit: this atlas proves no bound"
+        ));
     }
     match stopped {
         Some(StopReason::MemoryLimit) => console.say(format!(
@@ -187,22 +304,42 @@ fn build(path: &Path, options: GrowOptions, levels: u32, console: &Console, ctx:
 struct StatsRow {
     quads: usize,
     classes: usize,
+    /// How many classes there are, where the atlas is that of all 3-connected spheres.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    all_classes: Option<usize>,
     fewest_hexes: u32,
-    most_hexes: u32,
     mean_hexes: f64,
+    median_hexes: u32,
+    most_hexes: u32,
+    fewest_interior_vertices: u32,
+    mean_interior_vertices: f64,
+    most_interior_vertices: u32,
+}
+
+/// The number of 3-connected quad spheres of a size, as published (see `hexfill_mesh::generate`).
+fn all_classes(quads: usize) -> Option<usize> {
+    [(6, 1), (8, 1), (10, 3), (12, 11), (14, 58), (16, 451), (18, 4_461), (20, 49_957), (22, 598_102)]
+        .into_iter()
+        .find_map(|(size, count)| (size == quads).then_some(count))
 }
 
 fn stats(atlas: &Atlas, console: &Console) -> anyhow::Result<Exit> {
     let stats = atlas.stats();
+    let mean = |spread: Spread, classes: usize| spread.sum as f64 / classes as f64;
     let rows: Vec<StatsRow> = stats
         .classes
         .iter()
         .map(|(&quads, c)| StatsRow {
             quads,
             classes: c.classes,
-            fewest_hexes: c.fewest,
-            most_hexes: c.most,
-            mean_hexes: c.hexes as f64 / c.classes as f64,
+            all_classes: all_classes(quads),
+            fewest_hexes: c.hexes.fewest,
+            mean_hexes: mean(c.hexes, c.classes),
+            median_hexes: c.hexes.median,
+            most_hexes: c.hexes.most,
+            fewest_interior_vertices: c.interior.fewest,
+            mean_interior_vertices: mean(c.interior, c.classes),
+            most_interior_vertices: c.interior.most,
         })
         .collect();
     if console.json {
@@ -210,11 +347,21 @@ fn stats(atlas: &Atlas, console: &Console) -> anyhow::Result<Exit> {
         return Ok(Exit::Done);
     }
     console.print(format!("{} states, up to {} hexes", stats.states, stats.levels))?;
-    console.print("quads  classes  hexes: fewest  most   mean")?;
+    console
+        .print("quads  classes   of all  hexes: fewest  mean  median  most  interior vertices: fewest  mean  most")?;
     for row in rows {
         console.print(format!(
-            "{:5} {:8} {:14} {:5} {:6.1}",
-            row.quads, row.classes, row.fewest_hexes, row.most_hexes, row.mean_hexes
+            "{:5} {:8} {:>8} {:14} {:5.1} {:7} {:5} {:26} {:5.1} {:5}",
+            row.quads,
+            row.classes,
+            row.all_classes.map_or("-".to_owned(), |n| n.to_string()),
+            row.fewest_hexes,
+            row.mean_hexes,
+            row.median_hexes,
+            row.most_hexes,
+            row.fewest_interior_vertices,
+            row.mean_interior_vertices,
+            row.most_interior_vertices
         ))?;
     }
     Ok(Exit::Done)

@@ -226,7 +226,8 @@ fn enumerate(args: &EnumerateArgs, threads: usize, console: &Console, ctx: &Cont
     let mut output = Output::open(args.output.as_ref(), listed, args.format, params.rule, args.mirror)?;
     output.gallery = args.gallery.is_some().then(Gallery::default);
     let wanted = Wanted { selection: Some(&selection), list, targets: &targets };
-    let job = Job { params: &params, options: LevelOptions { threads, narrow_hashes: args.narrow_hashes }, wanted, ctx };
+    let job =
+        Job { params: &params, options: LevelOptions { threads, narrow_hashes: args.narrow_hashes }, wanted, ctx };
     let mut counts = Counts::default();
     if engine == Engine::Level {
         job.by_levels(&mut output, &mut counts)?;
@@ -234,7 +235,7 @@ fn enumerate(args: &EnumerateArgs, threads: usize, console: &Console, ctx: &Cont
         let part = args.part.unwrap_or(Chunk { index: 0, of: 1 });
         let chunks = args.chunks.unwrap_or_else(|| default_chunks(part.of));
         match &args.checkpoint {
-            Some(folder) => job.into_ledger(folder, part, chunks, &selection, console, &mut counts)?,
+            Some(folder) => job.with_ledger(folder, part, chunks, &selection, console, &mut counts)?,
             None => job.by_chunks(part, chunks, &mut output, &mut counts)?,
         }
     }
@@ -332,7 +333,7 @@ impl Job<'_> {
     }
 
     /// In chunks that a ledger in `folder` keeps: what it holds is not done again, and the objects stay there.
-    fn into_ledger(
+    fn with_ledger(
         &self,
         folder: &Path,
         part: Chunk,
@@ -454,13 +455,7 @@ fn report_merged(merged: &hexfill::unstable::enumerate::Merged, console: &Consol
     Ok(())
 }
 
-fn verify(
-    folder: &Path,
-    redo: usize,
-    threads: usize,
-    console: &Console,
-    ctx: &Context<'_>,
-) -> anyhow::Result<Exit> {
+fn verify(folder: &Path, redo: usize, threads: usize, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
     let merged = read_ledgers(folder)?;
     let mut findings = merged.inconsistencies();
     let missing = merged.missing().count();

@@ -17,7 +17,7 @@ use std::time::Instant;
 
 /// Flags of `search`.
 #[derive(clap::Args)]
-pub struct SearchArgs {
+pub(crate) struct SearchArgs {
     /// The surface: one three-connected sphere of quads, connectivity only.
     surface: String,
     /// Do only part RES of MOD, for job arrays: the parts together are the whole. Needs --checkpoint.
@@ -52,7 +52,7 @@ pub struct SearchArgs {
 }
 
 /// Searches, or adds up what others searched.
-pub fn run(args: &SearchArgs, threads: usize, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
+pub(crate) fn run(args: &SearchArgs, threads: usize, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
     let started = Instant::now();
     let input = files::load_problem(&args.surface, &args.reading)?;
     let problem = Problem::new(input.surface(), args.max_hexes.unwrap_or(1))?;

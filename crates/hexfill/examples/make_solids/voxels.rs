@@ -50,7 +50,13 @@ pub(crate) fn sphere(n: usize, seed: u64) -> Cells {
 
 /// A block with straight tunnels (two may cross), cavities of one cell and random dents; manifold all the way, though a tunnel
 /// or cavity may be cut open by a dent. Returns the genus and the number of boundary components as well.
-pub(crate) fn with_holes(size: [i32; 3], tunnels: usize, cavities: usize, dents: usize, seed: u64) -> (Cells, u64, usize) {
+pub(crate) fn with_holes(
+    size: [i32; 3],
+    tunnels: usize,
+    cavities: usize,
+    dents: usize,
+    seed: u64,
+) -> (Cells, u64, usize) {
     let mut random = Random::new(seed);
     let [x, y, z] = size;
     let mut cells: Cells = (0..x * y * z).map(|i| [i % x, i / x % y, i / x / y]).collect();

@@ -1,0 +1,183 @@
+//! Completion: every 3-connected sphere of up to so many quads gets a filling.
+//!
+//! What a growth did not reach is searched [backward](crate::backward) from. The ways found join what is known, so later
+//! searches meet them. Targets are taken in batches that only read what is known: the result does not depend on the
+//! number of threads.
+
+use crate::atlas::{Atlas, short_hash};
+use crate::backward::{Breadth, Way, shorter_way};
+use crate::canonical::Canonical;
+use crate::cavity::Cavity;
+use crate::grow::{ClassHash, class_hash};
+use crate::known::Known;
+use hexfill_mesh::{Context, StopReason, generate::all_spheres_up_to};
+use rayon::prelude::*;
+use rustc_hash::FxHashSet;
+
+/// Targets searched at a time.
+const BATCH: usize = 256;
+
+/// Most hexes of a filling that is better than none (the published bound for every sphere of at most 20 quads).
+const BETTER_THAN_NONE: u32 = 72;
+
+/// How hard to try, one after the other, while a target has too many hexes or none.
+const EFFORTS: [Breadth; 5] = [
+    Breadth { depth: 20, beam: 100, first: true },
+    Breadth { depth: 40, beam: 300, first: true },
+    Breadth { depth: 4, beam: 300, first: false },
+    Breadth { depth: 6, beam: 600, first: false },
+    Breadth { depth: 12, beam: 3_000, first: false },
+];
+
+/// What to complete.
+#[derive(Clone, Copy, Debug)]
+pub struct CompleteOptions {
+    /// Every class of at most this many quads is to have a filling. Their list is practical to 20.
+    pub max_quads: usize,
+    /// A filling with more hexes than this is looked at again with each effort.
+    pub max_hexes: u32,
+    /// How many efforts to make, each wider than the one before.
+    pub efforts: usize,
+}
+
+impl Default for CompleteOptions {
+    fn default() -> Self {
+        Self { max_quads: 20, max_hexes: 56, efforts: EFFORTS.len() }
+    }
+}
+
+/// What a completion brought.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CompleteReport {
+    /// Classes of at most [`CompleteOptions::max_quads`] quads.
+    pub targets: usize,
+    /// How many of them the growth had reached.
+    pub grown: usize,
+    /// How many the atlas to keep had, or had with fewer hexes.
+    pub kept: usize,
+    /// How many were found by searching backward.
+    pub found: usize,
+    /// How many of those have more hexes than asked for.
+    pub large: usize,
+    /// How many have no filling.
+    pub missing: usize,
+    /// Why the search ended.
+    pub stop: StopReason,
+}
+
+/// A class to fill.
+struct Target {
+    sphere: Cavity,
+    class: ClassHash,
+}
+
+/// A packed atlas of one filling a class: of all classes of at most `max_quads` quads, as far as they were found, and of all that
+/// `kept` names, which get no more hexes than there. `None` if one of the two is no atlas of this version.
+pub fn complete(
+    grown: &Atlas,
+    kept: &Atlas,
+    options: &CompleteOptions,
+    ctx: &Context<'_>,
+) -> Option<(Atlas, CompleteReport)> {
+    let mut known = Known::from_atlas(grown)?;
+    let targets = targets(options.max_quads);
+    let fewest = |known: &Known| targets.iter().map(|t| known.fewest(t.class)).collect::<Vec<Option<u32>>>();
+    let before = fewest(&known);
+    known.merge(&Known::from_atlas(kept)?)?;
+    let with_kept = fewest(&known);
+    let gained = before.iter().zip(&with_kept).filter(|(before, now)| before != now).count();
+    let mut report = CompleteReport {
+        targets: targets.len(),
+        grown: before.iter().flatten().count(),
+        kept: gained,
+        found: 0,
+        large: 0,
+        missing: 0,
+        stop: StopReason::Finished,
+    };
+    let names: FxHashSet<u64> =
+        targets.iter().map(|t| short_hash(t.class)).chain(kept.hashes.iter().copied()).collect();
+    for breadth in EFFORTS.iter().take(options.efforts) {
+        shorten(&mut known, &targets, breadth, options.max_hexes, ctx);
+        if let Some(stop) = ctx.stop() {
+            report.stop = stop;
+            break;
+        }
+    }
+    for (target, before) in targets.iter().zip(&with_kept) {
+        let hexes = known.fewest(target.class);
+        report.missing += usize::from(hexes.is_none());
+        report.found += usize::from(hexes.is_some() && before.is_none());
+        report.large += usize::from(hexes.is_some_and(|h| h > options.max_hexes));
+    }
+    let atlas = known.into_atlas(|class| names.contains(&short_hash(class)));
+    Some((atlas.pruned(1, |_, _| true), report))
+}
+
+fn targets(max_quads: usize) -> Vec<Target> {
+    let mut canonical = Canonical::new();
+    let spheres = all_spheres_up_to(max_quads).into_iter().step_by(2).flatten();
+    let target = |surface| {
+        let sphere = Cavity::from_surface(&surface)?.0;
+        canonical.compute(&sphere);
+        Some(Target { class: class_hash(canonical.code()), sphere })
+    };
+    spheres.filter_map(target).collect()
+}
+
+/// Searches backward from every target with more than `max_hexes` hexes or without a filling.
+fn shorten(known: &mut Known, targets: &[Target], breadth: &Breadth, max_hexes: u32, ctx: &Context<'_>) {
+    // A search that ends with its first way is for those that have none.
+    let too_many = |hexes: u32| hexes > max_hexes && !breadth.first;
+    let wanted: Vec<&Target> = targets.iter().filter(|t| known.fewest(t.class).is_none_or(too_many)).collect();
+    let mut found = 0;
+    for (i, batch) in wanted.chunks(BATCH).enumerate() {
+        ctx.report("atlas completion", (i * BATCH) as u64, Some(wanted.len() as u64), || {
+            format!("up to {} hexes back, {found} found or shortened", breadth.depth)
+        });
+        let search = |target: &&Target| {
+            let limit = known.fewest(target.class).unwrap_or(BETTER_THAN_NONE + 1);
+            if ctx.stop().is_some() { None } else { shorter_way(&target.sphere, limit, known, breadth) }
+        };
+        let ways: Vec<Option<Way>> = batch.par_iter().map(search).collect();
+        for way in ways.into_iter().flatten() {
+            let end = known.add_way(way.start, &way.classes).expect("what meets can be glued outward again");
+            debug_assert!(known.hexes(end) <= way.hexes);
+            found += 1;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{GrowOptions, Growth};
+
+    #[test]
+    fn small_classes_are_completed_and_nothing_kept_gets_worse() {
+        let mut growth = Growth::new(GrowOptions { cap: 18, width: 1 }).with_beam(300);
+        while growth.level() < 12 {
+            growth.grow(&Context::default());
+        }
+        let grown = Atlas::from_growth(&growth);
+        // The classes of 8 to 12 quads are left to the search, as far as they are no steps to others.
+        let kept = Atlas::embedded().pruned(1, |quads, _| quads == 14 || quads == 16);
+        let options = CompleteOptions { max_quads: 12, max_hexes: 56, efforts: 2 };
+        let run = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| complete(&grown, &kept, &options, &Context::default()).unwrap())
+        };
+        let (atlas, report) = run(1);
+        assert_eq!((report.targets, report.missing), (16, 0), "{report:?}");
+        assert_eq!(run(3), (atlas.clone(), report));
+        for atlas_before in [&kept, &grown.pruned(1, |quads, _| quads <= 12)] {
+            let named = (0..atlas_before.n_states() as u32).filter(|&s| atlas_before.hashes[s as usize] != 0);
+            for state in named {
+                let ball = crate::Ball::replay(atlas_before.flips_to(state)).unwrap();
+                let best = atlas.balls_for(&ball.boundary_only()).next().expect("a class that is kept");
+                assert!(best.n_hexes() <= ball.n_hexes());
+                best.debug_check();
+            }
+        }
+    }
+}
