@@ -44,7 +44,7 @@ static ENTRIES: &[Entry] = &[
         name: "octagonal-spindle",
         title: "octagonal spindle (tetragonal trapezohedron) with planar kites: 8 quads, one chord that crosses itself in every quad",
         source: "D. Eppstein, Linear complexity hexahedral mesh generation, 1999; coordinates computed for hexfill",
-        best: "40 hexes (Verhetsel, Pellerin, Remacle 2018; the same number here); more than 20 are needed",
+        best: "39 hexes by connectivity (found by hexfill; published: 40, Verhetsel, Pellerin, Remacle 2018); more than 20 are needed",
         file: obj!("octagonal-spindle"),
         format: Format::Obj,
         mesh: mesh!("octagonal-spindle"),
