@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::work::{Run, run};
 use hexfill::Context;
-use hexfill::enumerate::{
+use hexfill::unstable::enumerate::{
     EnumerateError, Filter, LevelOptions, ListFormat, Params, Plan, Rule, Selection, Tally, Wanted, all_levels, line,
     run_whole,
 };

@@ -1,11 +1,9 @@
 //! Errors of the libraries as exceptions of `hexfill.errors`, with the ids they are about.
 
-use hexfill::construct::ConstructError;
-use hexfill::embed::EmbedError;
-use hexfill::enumerate::EnumerateError;
 use hexfill::io::{FormatError, Place, Position, ReadError, WriteError};
 use hexfill::mesh::{HexMeshError, ImproperPair, Offenders, QuadId, SignatureError, SurfaceError, VertexId};
-use hexfill::{FillError, ProblemError, SimplifyError, ThreadsError};
+use hexfill::unstable::enumerate::EnumerateError;
+use hexfill::{EmbedError, Existence, FillError, ProblemError, SimplifyError, ThreadsError};
 use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -167,11 +165,9 @@ impl From<FillError> for Failure {
         let message = error.to_string();
         let none = Self::new("NoMeshExists", &message);
         match &error {
-            FillError::OddQuads { .. } => none,
-            FillError::Improper { pairs, .. } => none.pairs(pairs),
-            FillError::Construct(ConstructError::ImproperQuads { pairs }) => none.pairs(pairs),
-            FillError::Construct(ConstructError::OddCycleBounds { cycle, .. }) => none.edges(cycle),
-            FillError::Construct(ConstructError::OddQuads { .. } | ConstructError::OddComponent { .. }) => none,
+            FillError::NoMesh(Existence::ImproperQuads { pairs, .. }) => none.pairs(pairs),
+            FillError::NoMesh(Existence::OddCycleBounds { cycle }) => none.edges(cycle),
+            FillError::NoMesh(_) => none,
             FillError::Construct(_) => Self::not_found(message, "finished"),
             FillError::Refused { .. } => Self::internal(message),
             _ => Self::input(message),

@@ -3,14 +3,11 @@
 use crate::choices::choice;
 use crate::data::Data;
 use crate::failure::Failure;
-use crate::work::{Run, limit, run, stop_word};
-use hexfill::check::{Judged, cell_quality};
-use hexfill::construct::CellChoice;
-use hexfill::embed::{Objective, Options};
+use crate::work::{Run, limit, run};
 use hexfill::io::MeshData;
 use hexfill::{
-    BoundaryLayers, Collapse, Context, Effort, FillOptions, FillReport, PlaceOptions, Placed, Prefer, Problem,
-    SimplifyOptions, Strategy,
+    BoundaryLayers, CellChoice, Collapse, Context, Effort, EmbedOptions, FillOptions, FillReport, Objective,
+    PlaceOptions, Placed, Prefer, Problem, SimplifyOptions, StopReason, Strategy,
 };
 use pyo3::prelude::*;
 use serde_json::{Value, json};
@@ -50,25 +47,26 @@ impl Filling {
         let simplify = self.simplify || !self.embed && has_limit;
         let balls = if has_limit { u64::MAX } else { SIMPLIFY_BALLS };
         let (height, growth) = (self.layer_height, self.growth);
-        Ok(FillOptions {
-            strategy: choice("strategy", &self.strategy, &strategies)?,
-            prefer: choice("prefer", &self.prefer, &preferences)?,
-            effort: choice("effort", &self.effort, &efforts)?,
-            max_hexes: self.max_hexes.unwrap_or(u32::MAX),
-            count: self.best_of,
-            cells: if self.embed { CellChoice::Embeddable } else { CellChoice::Fewest },
-            simplify: simplify.then(|| SimplifyOptions::default().with_balls(balls)),
-            layers: self.layers.map(|count| BoundaryLayers { count, height, growth }),
-            ..FillOptions::default()
-        })
+        let mut options = FillOptions::default()
+            .with_strategy(choice("strategy", &self.strategy, &strategies)?)
+            .with_prefer(choice("prefer", &self.prefer, &preferences)?)
+            .with_effort(choice("effort", &self.effort, &efforts)?)
+            .with_max_hexes(self.max_hexes.unwrap_or(u32::MAX))
+            .with_count(self.best_of)
+            .with_cells(if self.embed { CellChoice::Embeddable } else { CellChoice::Fewest });
+        if simplify {
+            options = options.with_simplify(SimplifyOptions::default().with_balls(balls));
+        }
+        if let Some(count) = self.layers {
+            options = options.with_layers(BoundaryLayers { count, height, growth });
+        }
+        Ok(options)
     }
 
     fn placing(&self) -> PlaceOptions {
-        PlaceOptions {
-            embed: self.embed.then(Options::default),
-            best: self.best_of > 1,
-            limit: limit(self.embed_limit),
-        }
+        let how = PlaceOptions::default().with_best(self.best_of > 1);
+        let how = limit(self.embed_limit).map_or(how, |limit| how.with_limit(limit));
+        if self.embed { how } else { how.without_embedding() }
     }
 }
 
@@ -104,15 +102,16 @@ fn filled(
 ) -> Result<(MeshData, String), Failure> {
     let problem = Problem::from_data(name, surface)?;
     let made = hexfill::fill_placed(&problem, fill, &options.placing(), ctx)?;
-    let stopped = stop_word(made.stop);
+    let stopped = made.stop;
     let Some((filled, placed)) = made.meshes.first() else {
-        let tried = made.tried.join("; ");
+        let tried: Vec<String> = made.tried.iter().map(ToString::to_string).collect();
+        let tried = tried.join("; ");
         let message = format!(
             "no mesh was found within the bounds ({stopped}), which does not mean that none exists; tried: {tried}"
         );
-        return Err(Failure::not_found(message, stopped));
+        return Err(Failure::not_found(message, stopped.word()));
     };
-    let mut data = hexfill::mesh_data(&problem, &filled.mesh, placed.as_ref().map(|p| p.points.clone()));
+    let mut data = hexfill::mesh_data(&problem, filled.mesh(), placed.as_ref().map(|p| p.points().to_vec()));
     if let Some(placed) = placed.as_ref().filter(|_| options.embed) {
         placed.flag(&mut data);
     }
@@ -120,7 +119,7 @@ fn filled(
     report["geometry"] = json!(placed.as_ref().map(Placed::report));
     report["stopped"] = json!(stopped);
     report["choice"] = json!(made.choice);
-    report["notes"] = json!(problem.notes);
+    report["notes"] = json!(problem.notes());
     Ok((data, report.to_string()))
 }
 
@@ -148,14 +147,20 @@ pub(crate) fn embed(
 ) -> PyResult<Made> {
     let objectives =
         [("sj", Objective::ScaledJacobian), ("balanced", Objective::Balanced), ("untangle", Objective::UntangleOnly)];
-    let mut options = Options::new(choice("objective", objective, &objectives).map_err(|failure| failure.raise(py))?);
+    let mut options =
+        EmbedOptions::new(choice("objective", objective, &objectives).map_err(|failure| failure.raise(py))?);
     (options.starts, options.symmetric) = (starts, symmetric);
     let data = Arc::clone(&mesh.0);
     let ((data, report), interrupted) = run(py, how, move |ctx| embedded(&data, fresh, &options, ctx))?;
     Ok((data.into(), report, interrupted))
 }
 
-fn embedded(data: &MeshData, fresh: bool, options: &Options, ctx: &Context<'_>) -> Result<(MeshData, String), Failure> {
+fn embedded(
+    data: &MeshData,
+    fresh: bool,
+    options: &EmbedOptions,
+    ctx: &Context<'_>,
+) -> Result<(MeshData, String), Failure> {
     need_hexes(data)?;
     if !data.has_coordinates {
         return Err(Failure::input(
@@ -164,14 +169,11 @@ fn embedded(data: &MeshData, fresh: bool, options: &Options, ctx: &Context<'_>) 
     }
     let mesh = data.hex_mesh()?;
     let start = (!fresh).then_some(data.points.as_slice());
-    let made = hexfill::embed::embed(&mesh, &data.points, start, options, ctx)?;
-    let cells = cell_quality(&Judged::connectivity(mesh.n_vertices(), &data.hexes).with_points(&made.points));
-    let cells = cells.into_iter().flatten().collect();
-    let stopped = stop_word(made.report.stop);
-    let placed = Placed { points: made.points, cells, embedding: Some(made.report), refused: None, ways: 1 };
+    let placed = hexfill::embed_mesh(&mesh, &data.points, start, options, ctx)?;
+    let stopped = placed.embedding().map_or(StopReason::Finished, |report| report.stop);
     let mut out = data.clone();
     placed.flag(&mut out);
-    out.points.clone_from(&placed.points);
+    out.points = placed.points().to_vec();
     let report: Value = json!({ "geometry": placed.report(), "stopped": stopped });
     Ok((out, report.to_string()))
 }
@@ -227,7 +229,7 @@ fn simplified(data: &MeshData, options: &SimplifyOptions, ctx: &Context<'_>) -> 
         "balls": r.balls,
         "looked_up": r.looked_up,
         "exchanges": r.exchanges,
-        "stopped": stop_word(r.stop),
+        "stopped": r.stop,
         "notes": made.data.notes,
     });
     Ok((made.data, report.to_string()))

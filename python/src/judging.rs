@@ -5,8 +5,8 @@ use crate::data::{Data, floats};
 use crate::failure::Failure;
 use crate::work::{Run, run};
 use hexfill::Problem;
-use hexfill::check::{CellQuality, Judged, Level, Options, Report, Rules, cell_quality, judge};
 use hexfill::io::MeshData;
+use hexfill::unstable::check::{CellQuality, Level, Options, Report, Rules, cell_quality, judge};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
@@ -49,17 +49,10 @@ fn judged(
         return Err(Failure::input("there are no hexes; give a hex mesh (a surface is described by hexfill.info)"));
     }
     let problem = surface.map(|data| Problem::from_data("the surface", data)).transpose()?;
-    let quads: Option<Vec<[u32; 4]>> =
-        problem.as_ref().map(|p| p.surface.quads().iter().map(|q| q.map(|v| v.0)).collect());
-    let judged = Judged {
-        surface: quads.as_deref(),
-        points: data.has_coordinates.then_some(data.points.as_slice()),
-        surface_points: problem.as_ref().and_then(|p| p.points.as_deref()),
-        ..Judged::connectivity(data.vertex_count(), &data.hexes)
-    };
-    let report = judge(&judged, options, ctx);
-    let cells = data.has_coordinates.then(|| cell_quality(&judged).into_iter().collect::<Option<_>>()).flatten();
-    Ok((report, cells))
+    Ok(hexfill::with_judged(data, problem.as_ref(), |judged| {
+        let cells = data.has_coordinates.then(|| cell_quality(judged).into_iter().collect::<Option<_>>()).flatten();
+        (judge(judged, options, ctx), cells)
+    }))
 }
 
 fn by_name<'py>(py: Python<'py>, cells: &[CellQuality]) -> PyResult<Bound<'py, PyDict>> {

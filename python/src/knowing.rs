@@ -3,11 +3,11 @@
 use crate::data::Data;
 use crate::failure::Failure;
 use crate::work::{Run, run};
-use hexfill::check::{Judged, cell_quality};
 use hexfill::io::MeshData;
 use hexfill::mesh::{greedy_shelling, surface_signature};
-use hexfill::search::{Atlas, Cavity, MAX_QUADS};
-use hexfill::view::ViewInput;
+use hexfill::unstable::check::{Judged, cell_quality};
+use hexfill::unstable::search::{Atlas, Cavity, MAX_QUADS};
+use hexfill::unstable::view::ViewInput;
 use hexfill::{CureOptions, Problem, catalog as named, describe_mesh, describe_surface};
 use pyo3::prelude::*;
 use serde_json::{Value, json};
@@ -23,7 +23,7 @@ pub(crate) fn info(py: Python<'_>, data: &Data, name: String, how: Run) -> PyRes
     let (text, _) = run(py, how, move |_| {
         let info = if data.hexes.is_empty() {
             let problem = Problem::from_data(&name, &data)?;
-            json!(describe_surface(&problem.surface, problem.points.as_deref()))
+            json!(describe_surface(problem.surface(), problem.points()))
         } else {
             json!(describe_mesh(&data)?)
         };
@@ -58,12 +58,12 @@ pub(crate) fn atlas(py: Python<'_>, data: &Data, name: String, how: Run) -> PyRe
     let data = Arc::clone(&data.0);
     let (text, _) = run(py, how, move |_| {
         let problem = Problem::from_data(&name, &data)?;
-        let (cavity, _) = Cavity::from_surface(&problem.surface).ok_or_else(|| {
+        let (cavity, _) = Cavity::from_surface(problem.surface()).ok_or_else(|| {
             Failure::input(format!(
                 "{name} is not one sphere of at most {MAX_QUADS} quads; the atlas knows no other surfaces"
             ))
         })?;
-        let row = |ball: &hexfill::search::Ball| {
+        let row = |ball: &hexfill::unstable::search::Ball| {
             json!({
                 "hexes": ball.n_hexes(),
                 "interior_vertices": ball.n_vertices - cavity.n_vertices() as u32,
@@ -90,13 +90,13 @@ pub(crate) fn catalog(py: Python<'_>, how: Run) -> PyResult<String> {
             all.push(json!({
                 "name": name,
                 "title": entry.title,
-                "quads": problem.surface.n_quads(),
-                "vertices": problem.surface.n_vertices(),
-                "coordinates": problem.points.is_some(),
+                "quads": problem.surface().n_quads(),
+                "vertices": problem.surface().n_vertices(),
+                "coordinates": problem.points().is_some(),
                 "source": entry.source,
                 "best": entry.best,
                 "mesh_hexes": entry.best_mesh().map(|m| m.hexes.len()),
-                "signature": surface_signature(&problem.surface),
+                "signature": surface_signature(problem.surface()),
             }));
         }
         Ok(json!(all).to_string())
@@ -138,7 +138,8 @@ fn drawn<T>(
     }
     let mesh = data.hex_mesh()?;
     let judged = Judged::connectivity(data.points.len(), &data.hexes).with_points(&data.points);
-    let of_cell = |c: &Option<hexfill::check::CellQuality>| c.as_ref().map_or(f64::NAN, |c| c.certified_lower);
+    let of_cell =
+        |c: &Option<hexfill::unstable::check::CellQuality>| c.as_ref().map_or(f64::NAN, |c| c.certified_lower);
     let values: Vec<f64> = cell_quality(&judged).iter().map(of_cell).collect();
     let shelling = if is_page && mesh.n_hexes() <= SHELLING_LIMIT { greedy_shelling(&mesh) } else { None };
     Ok(draw(&ViewInput {
@@ -164,7 +165,7 @@ pub(crate) fn html(
     how: Run,
 ) -> PyResult<String> {
     let data = Arc::clone(&data.0);
-    Ok(run(py, how, move |_| drawn(&data, &title, &facts, true, hexfill::view::html))?.0)
+    Ok(run(py, how, move |_| drawn(&data, &title, &facts, true, hexfill::unstable::view::html))?.0)
 }
 
 /// A picture, PNG.
@@ -174,5 +175,6 @@ pub(crate) fn html(
 #[pyfunction]
 pub(crate) fn png(py: Python<'_>, data: &Data, width: u32, height: u32, how: Run) -> PyResult<Vec<u8>> {
     let data = Arc::clone(&data.0);
-    Ok(run(py, how, move |_| drawn(&data, "", &[], false, |input| hexfill::view::png(input, width, height)))?.0)
+    Ok(run(py, how, move |_| drawn(&data, "", &[], false, |input| hexfill::unstable::view::png(input, width, height)))?
+        .0)
 }

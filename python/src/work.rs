@@ -6,7 +6,7 @@
 //! thread only.
 
 use crate::failure::Failure;
-use hexfill::{Context, Progress, StopReason, with_threads};
+use hexfill::{Context, Progress, with_threads};
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict};
@@ -42,16 +42,6 @@ impl Run {
 /// A time in seconds as a limit; `None` if it limits nothing.
 pub(crate) fn limit(seconds: Option<f64>) -> Option<Duration> {
     seconds.filter(|&s| s < LONGEST).and_then(|s| Duration::try_from_secs_f64(s).ok())
-}
-
-/// A stop reason as one word.
-pub(crate) fn stop_word(stop: StopReason) -> &'static str {
-    match stop {
-        StopReason::Finished => "finished",
-        StopReason::Cancelled => "cancelled",
-        StopReason::TimeLimit => "time-limit",
-        StopReason::MemoryLimit => "memory-limit",
-    }
 }
 
 /// Where the worker leaves its news.

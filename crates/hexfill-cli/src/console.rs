@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 /// When to use colours.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, clap::ValueEnum)]
-pub enum ColorWhen {
+pub(crate) enum ColorWhen {
     /// On a terminal, unless NO_COLOR is set.
     Auto,
     /// Always.
@@ -19,7 +19,7 @@ pub enum ColorWhen {
 }
 
 /// Where messages go.
-pub struct Console {
+pub(crate) struct Console {
     quiet: bool,
     /// How much more to say (0, 1, ...).
     pub verbose: u8,
@@ -85,7 +85,7 @@ impl Console {
     }
 
     /// A line for the user, on stderr.
-    pub fn say(&self, text: impl AsRef<str>) {
+    pub(crate) fn say(&self, text: impl AsRef<str>) {
         if !self.quiet {
             self.finish_progress();
             tell(text.as_ref());
@@ -93,18 +93,18 @@ impl Console {
     }
 
     /// A remark about the input or result, on stderr.
-    pub fn note(&self, text: impl AsRef<str>) {
+    pub(crate) fn note(&self, text: impl AsRef<str>) {
         self.say(format!("{} {}", self.paint("note:", "36"), text.as_ref()));
     }
 
     /// An error with its causes, on stderr, in one message.
-    pub fn error(&self, error: &anyhow::Error) {
+    pub(crate) fn error(&self, error: &anyhow::Error) {
         self.finish_progress();
         tell(&format!("{} {}", self.paint("error:", "1;31"), message(error)));
     }
 
     /// The error that ends the command: on stderr, and as JSON on stdout where JSON was asked for.
-    pub fn fail(&self, error: &anyhow::Error, exit_code: u8) {
+    pub(crate) fn fail(&self, error: &anyhow::Error, exit_code: u8) {
         self.error(error);
         if self.json {
             // Nothing is left to be done if stdout fails as well.
@@ -120,7 +120,7 @@ impl Console {
     ///
     /// # Errors
     /// If stdout cannot be written.
-    pub fn print(&self, text: impl AsRef<str>) -> anyhow::Result<()> {
+    pub(crate) fn print(&self, text: impl AsRef<str>) -> anyhow::Result<()> {
         let mut out = std::io::stdout().lock();
         out.write_all(text.as_ref().as_bytes())?;
         out.write_all(b"\n")?;
@@ -132,7 +132,7 @@ impl Console {
     ///
     /// # Errors
     /// If stdout cannot be written.
-    pub fn print_json(&self, value: &impl serde::Serialize) -> anyhow::Result<()> {
+    pub(crate) fn print_json(&self, value: &impl serde::Serialize) -> anyhow::Result<()> {
         let mut value = serde_json::to_value(value)?;
         if let Some(object) = value.as_object_mut() {
             object.shift_insert(0, "json_version".to_owned(), JSON_VERSION.into());
@@ -141,7 +141,7 @@ impl Console {
     }
 
     /// Shows progress of long work.
-    pub fn progress(&self, p: &Progress) {
+    pub(crate) fn progress(&self, p: &Progress) {
         if self.quiet {
             return;
         }
@@ -173,7 +173,7 @@ impl Console {
     }
 
     /// Clears the bar.
-    pub fn finish_progress(&self) {
+    pub(crate) fn finish_progress(&self) {
         let mut state = self.progress.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         if let Some(bar) = state.bar.take() {
             bar.finish_and_clear();
@@ -182,7 +182,7 @@ impl Console {
 }
 
 /// A line on stderr. Work goes on if stderr is closed or full: its result matters, and the exit code is still read.
-pub fn tell(text: &str) {
+pub(crate) fn tell(text: &str) {
     let _ = writeln!(std::io::stderr(), "{text}");
 }
 

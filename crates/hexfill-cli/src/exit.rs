@@ -1,5 +1,6 @@
 //! Exit codes, signals and the quiet end of a broken pipe.
 
+use hexfill::unstable::prove::ProveError;
 use hexfill::{FillError, SimplifyError, StopReason};
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -33,21 +34,22 @@ impl Exit {
 }
 
 /// The exit code of an error: bad input unless it says otherwise.
-pub fn code_of(error: &anyhow::Error) -> Exit {
+pub(crate) fn code_of(error: &anyhow::Error) -> Exit {
     let fill = matches!(error.downcast_ref(), Some(FillError::Refused { .. }));
     let simplify = matches!(error.downcast_ref(), Some(SimplifyError::Refused { .. }));
-    if fill || simplify { Exit::Internal } else { Exit::Usage }
+    let search = matches!(error.downcast_ref(), Some(ProveError::Refused { .. }));
+    if fill || simplify || search { Exit::Internal } else { Exit::Usage }
 }
 
 /// Whether the reader of our output went away.
-pub fn is_broken_pipe(error: &anyhow::Error) -> bool {
+pub(crate) fn is_broken_pipe(error: &anyhow::Error) -> bool {
     error
         .chain()
         .any(|e| e.downcast_ref::<std::io::Error>().is_some_and(|e| e.kind() == std::io::ErrorKind::BrokenPipe))
 }
 
 /// The first SIGINT or SIGTERM asks the work to stop; the second ends the process at once.
-pub fn install_signal_handler() -> &'static AtomicBool {
+pub(crate) fn install_signal_handler() -> &'static AtomicBool {
     static CANCEL: AtomicBool = AtomicBool::new(false);
     let installed = ctrlc::set_handler(|| {
         if CANCEL.swap(true, Ordering::Relaxed) {

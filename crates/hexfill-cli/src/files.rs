@@ -8,7 +8,7 @@ use std::path::Path;
 use std::time::Duration;
 
 /// `90`, `90s`, `1.5m`, `2h`.
-pub fn parse_duration(text: &str) -> Result<Duration, String> {
+pub(crate) fn parse_duration(text: &str) -> Result<Duration, String> {
     let (number, unit) = split_unit(text);
     let seconds = match unit {
         "" | "s" => 1.0,
@@ -22,7 +22,7 @@ pub fn parse_duration(text: &str) -> Result<Duration, String> {
 }
 
 /// `1000000`, `800M`, `6G`, `6GiB`.
-pub fn parse_size(text: &str) -> Result<u64, String> {
+pub(crate) fn parse_size(text: &str) -> Result<u64, String> {
     let (number, unit) = split_unit(text);
     let scale = match unit.to_ascii_uppercase().as_str() {
         "" | "B" => 1u64,
@@ -41,13 +41,13 @@ fn split_unit(text: &str) -> (&str, &str) {
 }
 
 /// `--from` and `--to`: a format by name.
-pub fn parse_format(text: &str) -> Result<Format, String> {
+pub(crate) fn parse_format(text: &str) -> Result<Format, String> {
     Format::from_name(text).map_err(|e| e.to_string())
 }
 
 /// How input is read: flags of all commands that take surfaces.
 #[derive(clap::Args, Clone, Debug, Default)]
-pub struct InputArgs {
+pub(crate) struct InputArgs {
     /// Format of the input.
     #[arg(long, value_name = "FORMAT", value_parser = parse_format)]
     pub from: Option<Format>,
@@ -75,7 +75,7 @@ fn parse_tolerance(text: &str) -> Result<f64, String> {
 }
 
 /// What a file or stdin holds, with the flags applied.
-pub fn read_data(input: &str, how: &InputArgs) -> Result<MeshData> {
+pub(crate) fn read_data(input: &str, how: &InputArgs) -> Result<MeshData> {
     let mut data = if input == "-" {
         let Some(format) = how.from else { bail!("reading stdin: name its format with --from") };
         hexfill::io::read_from(std::io::stdin().lock(), format, "stdin")?
@@ -111,7 +111,7 @@ pub fn read_data(input: &str, how: &InputArgs) -> Result<MeshData> {
 }
 
 /// The problem named by a file, stdin, a catalogue name or a signature.
-pub fn load_problem(input: &str, how: &InputArgs) -> Result<Problem> {
+pub(crate) fn load_problem(input: &str, how: &InputArgs) -> Result<Problem> {
     if hexfill::is_named(input) {
         return Ok(Problem::load(input, None)?);
     }
@@ -120,7 +120,7 @@ pub fn load_problem(input: &str, how: &InputArgs) -> Result<Problem> {
 }
 
 /// Writes to a path (format by extension unless given) or, for `-`, to stdout; notes what the format cannot hold.
-pub fn write_data(output: &str, to: Option<Format>, data: &MeshData, console: &Console) -> Result<()> {
+pub(crate) fn write_data(output: &str, to: Option<Format>, data: &MeshData, console: &Console) -> Result<()> {
     let format = match to {
         Some(format) => Some(format),
         None => Format::from_path(Path::new(output)).ok(),
@@ -136,7 +136,7 @@ pub fn write_data(output: &str, to: Option<Format>, data: &MeshData, console: &C
 }
 
 /// Refuses an output path before any work is done: unknown extension, missing folder.
-pub fn check_output(output: &str, to: Option<Format>) -> Result<()> {
+pub(crate) fn check_output(output: &str, to: Option<Format>) -> Result<()> {
     if output == "-" {
         return if to.is_some() { Ok(()) } else { bail!("writing stdout: name its format with --to") };
     }
@@ -147,7 +147,7 @@ pub fn check_output(output: &str, to: Option<Format>) -> Result<()> {
 }
 
 /// Refuses the path of a mesh before any work is done. `surface`: its boundary.
-pub fn check_mesh_output(output: &str, to: Option<Format>, surface: &MeshData) -> Result<()> {
+pub(crate) fn check_mesh_output(output: &str, to: Option<Format>, surface: &MeshData) -> Result<()> {
     let path = Path::new(output);
     let format = to.map_or_else(|| Format::from_path(path), Ok)?;
     if !format.holds_cells() {
@@ -160,7 +160,7 @@ pub fn check_mesh_output(output: &str, to: Option<Format>, surface: &MeshData) -
 }
 
 /// Refuses a path that cannot be written: a folder, or in a folder that does not exist or takes no files.
-pub fn check_folder(output: &str) -> Result<()> {
+pub(crate) fn check_folder(output: &str) -> Result<()> {
     // Through a symbolic link to the file it names, as it is written.
     let target = std::fs::canonicalize(output).unwrap_or_else(|_| Path::new(output).to_owned());
     if target.is_dir() {
@@ -179,7 +179,7 @@ pub fn check_folder(output: &str) -> Result<()> {
 }
 
 /// Refuses to read and write, or to write twice, the same file. `-` is never the same.
-pub fn check_distinct(paths: &[&str]) -> Result<()> {
+pub(crate) fn check_distinct(paths: &[&str]) -> Result<()> {
     let real = |path: &str| std::fs::canonicalize(path).unwrap_or_else(|_| Path::new(path).to_owned());
     for (i, a) in paths.iter().enumerate().filter(|(_, a)| **a != "-") {
         if let Some(b) = paths[..i].iter().find(|b| real(b) == real(a)) {
@@ -190,7 +190,7 @@ pub fn check_distinct(paths: &[&str]) -> Result<()> {
 }
 
 /// What an input is called in titles: the name of the file without its folders, a catalogue name as it is.
-pub fn short_name(input: &str) -> &str {
+pub(crate) fn short_name(input: &str) -> &str {
     if hexfill::is_named(input) {
         return input;
     }
@@ -207,7 +207,7 @@ fn check_input(input: &str) -> Result<()> {
 }
 
 /// Writes a text or binary file by way of a temporary one beside it.
-pub fn write_file(path: &str, write: impl FnOnce(&mut std::fs::File) -> std::io::Result<()>) -> Result<()> {
+pub(crate) fn write_file(path: &str, write: impl FnOnce(&mut std::fs::File) -> std::io::Result<()>) -> Result<()> {
     let target = Path::new(path);
     let folder = target.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut file = tempfile::Builder::new().prefix(".hexfill-").tempfile_in(folder).with_context(|| path.to_owned())?;

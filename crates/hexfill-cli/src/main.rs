@@ -90,6 +90,8 @@ enum Command {
     Atlas(commands::atlas::AtlasArgs),
     /// Enumerate every hex mesh of n cubes, without isomorphic copies.
     Enumerate(commands::enumerate::EnumerateArgs),
+    /// List every hex mesh of a sphere with at most so many hexes, or prove that there is none.
+    Search(commands::search::SearchArgs),
     /// Print shell completions.
     Completions(commands::completions::CompletionsArgs),
     /// Print a manual page.
@@ -153,6 +155,7 @@ fn run() -> ExitCode {
         Command::Catalog(args) => commands::catalog::run(args, &console),
         Command::Atlas(args) => commands::atlas::run(args, &console, &ctx),
         Command::Enumerate(args) => commands::enumerate::run(args, rayon::current_num_threads(), &console, &ctx),
+        Command::Search(args) => commands::search::run(args, rayon::current_num_threads(), &console, &ctx),
         Command::Completions(args) => commands::completions::run(args),
         Command::Man(args) => commands::man::run(args),
     };

@@ -17,7 +17,7 @@ static TOLD: AtomicBool = AtomicBool::new(false);
 const PRINTING: &str = "failed printing to std";
 
 /// Runs the program; a panic in it becomes an exit code.
-pub fn guard(run: impl FnOnce() -> ExitCode) -> ExitCode {
+pub(crate) fn guard(run: impl FnOnce() -> ExitCode) -> ExitCode {
     std::panic::set_hook(Box::new(hook));
     ended(run)
 }
@@ -74,7 +74,7 @@ fn code_of(text: &str) -> Exit {
 }
 
 /// Panics in every worker thread if a test asks for it; nothing outside builds with debug assertions.
-pub fn provoked_by_test() {
+pub(crate) fn provoked_by_test() {
     if cfg!(debug_assertions) && std::env::var_os("HEXFILL_TEST_PANIC").is_some() {
         use rayon::prelude::*;
         (0..1000).into_par_iter().for_each(|i| panic!("provoked\n  {i}"));

@@ -1,29 +1,16 @@
 //! Why a surface is not filled.
 
 use crate::cells::pattern::Pattern;
-use hexfill_mesh::{Edge, HexMeshError, ImproperPair, Offenders, StopReason};
+use crate::surface::existence::Existence;
+use hexfill_mesh::{HexMeshError, StopReason};
 
 /// Why there is no construction.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ConstructError {
-    /// The number of quads is odd.
-    #[error("the surface has {given} quads, an odd number: every hex mesh has an even number of boundary quads")]
-    OddQuads {
-        /// Number of quads.
-        given: usize,
-    },
-    /// A component and the cavities in it have an odd number of quads together: no hex mesh exists, even if the
-    /// whole surface has an even number.
-    #[error(
-        "component {component} with its cavities has {given} quads, an odd number: every hex mesh of a connected solid has an even number"
-    )]
-    OddComponent {
-        /// The component with the smallest quad.
-        component: usize,
-        /// The number of quads.
-        given: usize,
-    },
+    /// A theorem forbids every mesh of the surface.
+    #[error("no hex mesh exists: {0}")]
+    NoMesh(Existence),
     /// Two components of a solid have odd numbers of quads and no chain of hexes was found that joins them.
     #[error(
         "components {components:?} have odd numbers of quads and could not be joined by a chain of hexes: {reason}"
@@ -33,20 +20,6 @@ pub enum ConstructError {
         components: [usize; 2],
         /// What went wrong.
         reason: String,
-    },
-    /// Quads that share too much, so that no proper hex mesh has them in its boundary.
-    #[error("{} pairs of quads share more than a vertex or an edge: {pairs}; split these quads", pairs.count)]
-    ImproperQuads {
-        /// The pairs.
-        pairs: Offenders<ImproperPair>,
-    },
-    /// An odd cycle of surface edges bounds a surface in the interior.
-    #[error("an odd cycle of {} edges bounds inside, so no hex mesh exists: {edges}", edges.count)]
-    OddCycleBounds {
-        /// The first edges; the whole cycle is in `cycle`.
-        edges: Offenders<Edge>,
-        /// The whole cycle, sorted.
-        cycle: Vec<Edge>,
     },
     /// Tetrahedra of the interior are needed and not at hand.
     #[error("tetrahedra of the interior are needed (genus {genus}, {components} component(s)): {reason}")]

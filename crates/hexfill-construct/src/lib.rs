@@ -54,4 +54,4 @@ pub use options::{ConstructOptions, RouteChoice};
 pub use plan::colouring::{Colouring, all_black, colouring};
 pub use plan::matching::{LightSides, light_sides};
 pub use report::{Construction, Report, Route};
-pub use surface::existence::{Existence, existence};
+pub use surface::existence::{Existence, existence, forbidden};

@@ -52,7 +52,7 @@ fn tori_of_all_parities() {
                 let Existence::OddCycleBounds { cycle } = existence(&surface, Some(&points)) else { panic!("exists") };
                 is_odd_cycle(&surface, &cycle);
                 match made {
-                    Err(ConstructError::OddCycleBounds { cycle, .. }) => is_odd_cycle(&surface, &cycle),
+                    Err(ConstructError::NoMesh(Existence::OddCycleBounds { cycle })) => is_odd_cycle(&surface, &cycle),
                     other => panic!("{other:?}"),
                 }
             }

@@ -38,7 +38,7 @@ fn a_cavity_with_a_handle() {
             check(&surface, &made.unwrap());
         } else {
             assert!(matches!(existence(&surface, Some(&points)), Existence::OddCycleBounds { .. }));
-            assert!(matches!(made, Err(ConstructError::OddCycleBounds { .. })));
+            assert!(matches!(made, Err(ConstructError::NoMesh(Existence::OddCycleBounds { .. }))));
         }
     }
     let (surface, points) = together(&[box_at(3, 6.0, O, true), torus_at(5, 4, true, 1.0, O, false)]);
@@ -113,7 +113,7 @@ fn a_solid_with_an_odd_number_of_quads_is_refused() {
     }
     assert!(matches!(existence(&surface, None), Existence::Unknown { .. }));
     match construct(&surface, Some(&points), &ConstructOptions::default(), &Context::default()) {
-        Err(ConstructError::OddComponent { component: 0, given: 15 }) => {}
+        Err(ConstructError::NoMesh(Existence::OddSolid { given: 15, .. })) => {}
         other => panic!("{other:?}"),
     }
 }

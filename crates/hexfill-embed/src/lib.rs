@@ -4,47 +4,51 @@
 //! 1. **start**: interior vertices at weighted means of their neighbours (graph Laplacian), or where the caller says;
 //! 2. **untangle**: minimise an energy that is finite on inverted cells and a barrier in the end (L-BFGS), then make
 //!    whole cells positive in the Bernstein sense, not only their corners;
-//! 3. **optimise**: raise the worst scaled Jacobian by linear programs in a trust region, or lower the worst condition number;
+//! 3. **optimise**: raise the worst scaled Jacobian by linear programs in a trust region and by barriers, or lower the worst condition number;
 //! 4. **report**: validity in floating point, worst cells, and the vertex-star upper bounds no embedding can beat.
+//!
+//! | folder | what is in it | may use |
+//! |---|---|---|
+//! | `solvers` | L-BFGS, conjugate gradients, the interior-point solver's programs, long vectors | - |
+//! | `cell` | one cell: Jacobian, Bernstein form, bisection, scaled Jacobian, condition number, Hessian | - |
+//! | `problem` | hexes with free and fixed vertices, symmetric variables, patches | solvers |
+//! | `quality` | all cells judged; `Verdict`, which of two embeddings is better | problem, cell |
+//! | `starts` | means of neighbours; the canonical polyhedron of a surface | problem, solvers |
+//! | `bounds` | what no embedding can beat: vertex stars, angles, limits of a surface | problem, solvers |
+//! | `improvement` | untangling, barriers, programs, each on all or on patches | all above but starts, bounds |
+//! | `pipeline` | normal coordinates, one start, the best of several, the report | all above |
+//! | `embed` | the public verbs | all above |
+//!
+//! No two files use each other, in a circle or at once.
 //!
 //! Boundary vertices keep the bits they were given. Nothing here is a proof: that is for `hexfill-check`.
 //! What bounds every mesh of a surface, or every one-edge layer, is known before there is one ([`surface_limits`]).
 //! Surfaces without coordinates get those of the canonical polyhedron ([`canonical_polyhedron`]).
+//! Sources: V. Garanzha et al., "Foldover-free maps in 50 lines of code" (2021); A. Johnen, J.-C. Weill, J.-F. Remacle, "Robust and efficient
+//! validation of the linear hexahedral element" (2017); A. Bobenko, B. Springborn, "Variational principles for circle patterns and Koebe's theorem"
+//! (2004); J. Nocedal, S. Wright, "Numerical optimization" (2006). The book's page `embedding` tells the whole story.
 
+#![warn(unreachable_pub)]
 // Matrices and small vectors read like their formulas with indices.
 #![allow(clippy::needless_range_loop)]
 
-mod canonical;
-mod curvature;
+mod bounds;
+mod cell;
 mod embed;
-mod energy;
 mod error;
-mod interior;
-mod jacobian;
-mod lbfgs;
-mod lengths;
-mod lift;
-mod local;
-mod maxmin;
-mod measure;
-mod patch;
+mod improvement;
+mod options;
+mod pipeline;
 mod problem;
-mod program;
-mod raise;
+mod quality;
 mod report;
-#[cfg(test)]
-mod samples;
-mod star;
-mod star_search;
-mod surface_limits;
-mod symmetry;
-mod tutte;
-mod untangle;
-mod vector;
+mod serial;
+mod solvers;
+mod starts;
 
-pub use canonical::canonical_polyhedron;
-pub use embed::{embed, quick_star_bound, star_bounds, tutte_start};
+pub use bounds::{CornerLimit, EdgeLimit, StarBound, SurfaceLimits, VertexLimit, surface_limits};
+pub use embed::{embed, quick_star_bound, star_bounds, tutte_start, untangle_near};
 pub use error::EmbedError;
-pub use report::{CellQuality, EmbedReport, Embedding, Objective, Options};
-pub use star::StarBound;
-pub use surface_limits::{CornerLimit, EdgeLimit, SurfaceLimits, VertexLimit, surface_limits};
+pub use options::{Objective, Options};
+pub use report::{CellQuality, EmbedReport, Embedding};
+pub use starts::canonical_polyhedron;

@@ -1,68 +1,10 @@
-//! Requests and what came of them: [`Options`], [`Embedding`], [`EmbedReport`].
+//! What came of a request: [`Embedding`] and its [`EmbedReport`].
 
-use crate::star::StarBound;
+use crate::bounds::StarBound;
+use crate::options::Objective;
+use crate::serial::serialize_hex;
 use hexfill_mesh::{HexId, StopReason};
 use serde::Serialize;
-
-/// What the coordinates should be good at.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-#[non_exhaustive]
-pub enum Objective {
-    /// det J > 0 in every cell, no more.
-    UntangleOnly,
-    /// The largest worst scaled Jacobian.
-    #[default]
-    ScaledJacobian,
-    /// The smallest worst condition number with a worst scaled Jacobian of at least 95 % of the optimum found.
-    Balanced,
-}
-
-/// How to embed. Results depend on these and on [`hexfill_mesh::Context::seed`], not on the number of threads.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct Options {
-    /// What to strive for.
-    pub objective: Objective,
-    /// Starts at most; 0 chooses by size: 8 up to 100 hexes, 4 up to 400, and beyond that as many as it takes to find
-    /// one that is valid, up to 4 (above 5000 hexes 2, or only the one given). One, if the star bounds say that no placement is valid.
-    pub starts: u32,
-    /// Keep to positions with the symmetries of the boundary that are automorphisms of the mesh: fewer variables, a
-    /// symmetric result. Without effect if there are none. The whole mesh is worked on at once, whatever the limits below.
-    pub symmetric: bool,
-    /// Take a given start for a guess of the graph-Laplacian one: it is smoothed first.
-    pub smooth_start: bool,
-    /// Worker threads; 0 uses the threads of the surrounding pool.
-    pub threads: usize,
-    /// Linear programs at most, a start.
-    pub programs: usize,
-    /// Meshes with more hexes than this are optimised patch by patch.
-    pub whole_limit: usize,
-    /// Meshes with more hexes than this are untangled patch by patch, too.
-    pub local_limit: usize,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self {
-            objective: Objective::default(),
-            starts: 0,
-            symmetric: false,
-            smooth_start: false,
-            threads: 0,
-            programs: 150,
-            whole_limit: 400,
-            local_limit: 20_000,
-        }
-    }
-}
-
-impl Options {
-    /// The defaults with this objective.
-    pub fn new(objective: Objective) -> Self {
-        Self { objective, ..Self::default() }
-    }
-}
 
 /// Coordinates and their report.
 #[derive(Clone, Debug, PartialEq)]
@@ -81,10 +23,6 @@ pub struct CellQuality {
     pub hex: HexId,
     /// The smallest scaled Jacobian seen in it; not positive for a cell that is not valid.
     pub scaled_jacobian: f64,
-}
-
-fn serialize_hex<S: serde::Serializer>(h: &HexId, s: S) -> Result<S::Ok, S::Error> {
-    s.serialize_u32(h.0)
 }
 
 fn serialize_stop<S: serde::Serializer>(stop: &StopReason, s: S) -> Result<S::Ok, S::Error> {

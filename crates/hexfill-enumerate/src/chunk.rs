@@ -12,19 +12,12 @@ use crate::level::{LevelOptions, all_levels};
 use crate::params::{Params, Rule};
 use crate::tally::Tally;
 use crate::targets::{Found, Wanted};
+use hexfill_ledger::CpuClock;
 use hexfill_mesh::Context;
-use serde::{Deserialize, Serialize};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Chunk `index` of `of`.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug, Serialize, Deserialize)]
-pub struct Chunk {
-    /// Which, from 0.
-    pub index: usize,
-    /// Of how many.
-    pub of: usize,
-}
+pub use hexfill_ledger::Chunk;
 
 /// The result of one chunk.
 #[derive(Clone, Debug)]
@@ -192,28 +185,4 @@ impl Plan {
             }
         })
     }
-}
-
-/// Processor time of the current thread where the system tells it, else the time that passed.
-struct CpuClock {
-    start: Option<u64>,
-    wall: std::time::Instant,
-}
-
-impl CpuClock {
-    fn start() -> Self {
-        Self { start: thread_nanoseconds(), wall: std::time::Instant::now() }
-    }
-
-    fn elapsed(&self) -> u64 {
-        match (self.start, thread_nanoseconds()) {
-            (Some(start), Some(now)) => now - start,
-            _ => self.wall.elapsed().as_nanos() as u64,
-        }
-    }
-}
-
-/// Linux: the first number of the thread's `schedstat`.
-fn thread_nanoseconds() -> Option<u64> {
-    std::fs::read_to_string("/proc/thread-self/schedstat").ok()?.split(' ').next()?.parse().ok()
 }

@@ -5,31 +5,17 @@ use crate::error::EnumerateError;
 use crate::ledger::{Header, Ledger};
 use crate::tally::Tally;
 use crate::targets::{Found, Wanted};
+use hexfill_ledger::{default_chunks, mixed_order};
 use hexfill_mesh::Context;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// The chunks of one job of an array: those of `chunks` whose number is `part.index` modulo `part.of`.
+/// As [`hexfill_ledger::chunks_of_part`].
 ///
 /// # Errors
-/// [`EnumerateError::BadParameters`] unless `part.index < part.of <= chunks` and `part.of` divides `chunks`, so that the jobs
-/// partition the chunks.
+/// [`EnumerateError::BadParameters`].
 pub fn chunks_of_part(part: Chunk, chunks: usize) -> Result<Vec<Chunk>, EnumerateError> {
-    if part.index >= part.of || chunks == 0 || !chunks.is_multiple_of(part.of) {
-        return Err(EnumerateError::BadParameters {
-            why: format!(
-                "part {}/{} of {chunks} chunks: RES must be below MOD, and the number of chunks a multiple of MOD",
-                part.index, part.of
-            ),
-        });
-    }
-    Ok((part.index..chunks).step_by(part.of).map(|index| Chunk { index, of: chunks }).collect())
-}
-
-/// The number of chunks to use for `parts` jobs when the user does not say: at least 1024, so that work spreads evenly, and a multiple
-/// of `parts`. It does not depend on the number of threads, so neither does the order of a listing.
-pub fn default_chunks(parts: usize) -> usize {
-    1024usize.next_multiple_of(parts.max(1))
+    Ok(hexfill_ledger::chunks_of_part(part, chunks)?)
 }
 
 /// Gives results on in the order of their chunks, holding back those that come too early.
@@ -101,8 +87,7 @@ pub fn run_checkpointed(
     let mut ledger = Ledger::open(folder, part, header)?;
     let found_done = ledger.records().len();
     let mut left: Vec<Chunk> = chunks.iter().copied().filter(|c| !ledger.records().contains_key(&c.index)).collect();
-    // In a mixed order, so that the chunks of an unfinished run are a fair sample: neighbours are alike.
-    left.sort_by_key(|c| xxhash_rust::xxh3::xxh3_64(&(c.index as u64).to_le_bytes()));
+    mixed_order(&mut left);
     plan.run_all(&left, threads, wanted, ctx, &mut |result| ledger.append(&result))?;
     let mut tally = Tally::default();
     let mut cpu_nanoseconds = 0;

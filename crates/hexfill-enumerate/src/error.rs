@@ -72,3 +72,17 @@ pub enum EnumerateError {
         reason: hexfill_mesh::StopReason,
     },
 }
+
+impl From<hexfill_ledger::LedgerError> for EnumerateError {
+    fn from(error: hexfill_ledger::LedgerError) -> Self {
+        use hexfill_ledger::LedgerError as L;
+        match error {
+            L::BadParameters { why } => Self::BadParameters { why },
+            L::Io { path, source } => Self::Io { path, source },
+            L::BadLedger { path, line, why } => Self::BadLedger { path, line, why },
+            L::OtherParameters { path, differences } => Self::OtherParameters { path, differences },
+            L::Incomplete { why } => Self::Incomplete { why },
+            other => Self::BadParameters { why: other.to_string() },
+        }
+    }
+}

@@ -177,7 +177,7 @@ mod brute {
         FACETS.iter().any(|f| f.iter().map(|&i| cube[i]).collect::<BTreeSet<_>>() == *set)
     }
 
-    pub fn is_strict(cubes: &[[u8; 8]]) -> bool {
+    pub(crate) fn is_strict(cubes: &[[u8; 8]]) -> bool {
         cubes.iter().enumerate().all(|(a, x)| {
             let own: BTreeSet<u8> = x.iter().copied().collect();
             own.len() == 8
@@ -195,7 +195,7 @@ mod brute {
 
     /// All children of a parent by brute force: each corner of the new cube is an old vertex or new, at least one facet is glued,
     /// no merging, old cubes unchanged; proper intersection, every quad in at most two cubes, glued consistently.
-    pub fn children_without_merging(parent: &Complex) -> BTreeSet<Code> {
+    pub(crate) fn children_without_merging(parent: &Complex) -> BTreeSet<Code> {
         let boundary = Boundary::of(parent);
         let mut out = BTreeSet::new();
         let old = parent.n_vertices() as u8;

@@ -179,8 +179,8 @@ impl MeshData {
         self.numbered_faces().map(|(_, face, tag)| (face, tag))
     }
 
-    /// The same with the index of each face that is a quad among the quads.
-    pub(crate) fn numbered_faces(&self) -> impl Iterator<Item = (Option<usize>, &[u32], i64)> + Clone {
+    /// All faces with their tags (0 for none), in the order of the file, and the index of each face that is a quad among the quads.
+    pub fn numbered_faces(&self) -> impl Iterator<Item = (Option<usize>, &[u32], i64)> + Clone {
         let (mut position, mut quad, mut other) = (0, 0, 0);
         std::iter::from_fn(move || {
             // Positions that leave gaps (a hand-made MeshData) do no harm: the other faces then come last.

@@ -19,6 +19,30 @@ pub enum StopReason {
     MemoryLimit,
 }
 
+impl StopReason {
+    /// One word, as reports and JSON have it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Finished => "finished",
+            Self::Cancelled => "cancelled",
+            Self::TimeLimit => "time-limit",
+            Self::MemoryLimit => "memory-limit",
+        }
+    }
+}
+
+impl std::fmt::Display for StopReason {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.word())
+    }
+}
+
+impl serde::Serialize for StopReason {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.word())
+    }
+}
+
 /// A progress report. `stage` is one word or two ("atlas level", "untangle"); `done` of `total` steps of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Progress {

@@ -95,7 +95,7 @@ pub(crate) struct HexWalker<'a> {
 }
 
 impl<'a> HexWalker<'a> {
-    pub fn new(mesh: &'a HexMesh) -> Self {
+    pub(crate) fn new(mesh: &'a HexMesh) -> Self {
         Self {
             mesh,
             label: vec![UNLABELLED; mesh.n_vertices()],
@@ -178,7 +178,7 @@ impl<'a> HexWalker<'a> {
     }
 
     /// The code of a flag.
-    pub fn code(&mut self, flag: HexFlag) -> Vec<u32> {
+    pub(crate) fn code(&mut self, flag: HexFlag) -> Vec<u32> {
         let mut code = Vec::new();
         self.walk(flag, |number| {
             code.push(number);
@@ -247,7 +247,7 @@ pub(crate) struct HexCanonizer<'a> {
 }
 
 impl<'a> HexCanonizer<'a> {
-    pub fn new(mesh: &'a HexMesh) -> Self {
+    pub(crate) fn new(mesh: &'a HexMesh) -> Self {
         Self {
             walker: HexWalker::new(mesh),
             orbits: Orbits::default(),
@@ -257,7 +257,7 @@ impl<'a> HexCanonizer<'a> {
     }
 
     /// The canonical form of the component that consists of `hexes`.
-    pub fn canonical(&mut self, hexes: &[HexId], frames: Frames) -> HexCanonical {
+    pub(crate) fn canonical(&mut self, hexes: &[HexId], frames: Frames) -> HexCanonical {
         let candidates = self.candidates(hexes, frames);
         let Self { walker, orbits, place, .. } = self;
         // Orbits are kept by position among the candidates: all 48 flags of every hex would take far more memory than the mesh.

@@ -11,7 +11,7 @@ pub(crate) struct Orbits {
 
 impl Orbits {
     /// Makes each of the given indices (below `n`) an orbit of its own; the table is kept from one use to the next.
-    pub fn reset(&mut self, n: usize, indices: impl Iterator<Item = usize>) {
+    pub(crate) fn reset(&mut self, n: usize, indices: impl Iterator<Item = usize>) {
         if self.parent.len() < n {
             self.parent.resize(n, 0);
             self.done.resize(n, false);
@@ -31,22 +31,22 @@ impl Orbits {
         i
     }
 
-    pub fn same(&mut self, a: usize, b: usize) -> bool {
+    pub(crate) fn same(&mut self, a: usize, b: usize) -> bool {
         self.root(a) == self.root(b)
     }
 
-    pub fn is_done(&mut self, i: usize) -> bool {
+    pub(crate) fn is_done(&mut self, i: usize) -> bool {
         let root = self.root(i);
         self.done[root]
     }
 
     /// Marks the orbit of `i` as one that cannot have the smallest code.
-    pub fn finish(&mut self, i: usize) {
+    pub(crate) fn finish(&mut self, i: usize) {
         let root = self.root(i);
         self.done[root] = true;
     }
 
-    pub fn union(&mut self, a: usize, b: usize) {
+    pub(crate) fn union(&mut self, a: usize, b: usize) {
         let (a, b) = (self.root(a), self.root(b));
         let (low, high) = (a.min(b), a.max(b));
         self.parent[high] = low;

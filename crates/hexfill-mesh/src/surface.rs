@@ -353,6 +353,11 @@ impl QuadSurface {
         &self.quads
     }
 
+    /// The quads as plain arrays, for writers and foreign code.
+    pub fn quads_raw(&self) -> Vec<[u32; 4]> {
+        self.quads.iter().map(|q| q.map(|v| v.0)).collect()
+    }
+
     /// The corners of a quad.
     pub fn quad(&self, q: QuadId) -> [VertexId; 4] {
         self.quads[q.index()]

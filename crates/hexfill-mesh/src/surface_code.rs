@@ -60,7 +60,7 @@ pub(crate) struct Walker<'a> {
 }
 
 impl<'a> Walker<'a> {
-    pub fn new(surface: &'a QuadSurface) -> Self {
+    pub(crate) fn new(surface: &'a QuadSurface) -> Self {
         Self {
             surface,
             label: vec![UNLABELLED; surface.n_vertices()],
@@ -130,7 +130,7 @@ impl<'a> Walker<'a> {
     }
 
     /// The code of a flag.
-    pub fn code(&mut self, flag: Flag) -> Vec<u32> {
+    pub(crate) fn code(&mut self, flag: Flag) -> Vec<u32> {
         let mut code = Vec::new();
         self.walk(flag, |number| {
             code.push(number);
@@ -197,12 +197,12 @@ pub(crate) struct Canonizer<'a> {
 }
 
 impl<'a> Canonizer<'a> {
-    pub fn new(surface: &'a QuadSurface) -> Self {
+    pub(crate) fn new(surface: &'a QuadSurface) -> Self {
         Self { walker: Walker::new(surface), orbits: Orbits::default(), place: vec![0; surface.n_quads()] }
     }
 
     /// The canonical form of the component that holds the quads `quads` (all of them).
-    pub fn canonical(&mut self, quads: &[u32], handedness: Handedness) -> Canonical {
+    pub(crate) fn canonical(&mut self, quads: &[u32], handedness: Handedness) -> Canonical {
         let Self { walker, orbits, place } = self;
         let candidates = candidates(walker, quads, handedness);
         orbits.reset(8 * walker.surface.n_quads(), candidates.iter().map(|f| f.index()));

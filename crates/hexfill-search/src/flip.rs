@@ -14,7 +14,7 @@
 //! and otherwise S is one edge. So every edge of the new hex that the covered quads do not have, every diagonal of a
 //! quad that is not covered and every body diagonal must join a pair that nothing has used yet.
 
-use crate::cavity::{Cavity, MAX_VERTICES, Pairs, next, turn};
+use crate::cavity::{Cavity, MAX_QUADS, MAX_VERTICES, Pairs, next, turn};
 use hexfill_mesh::cube::{BODY_DIAGONALS, EDGES, FACET_DIAGONALS, FACETS};
 use std::sync::LazyLock;
 
@@ -275,24 +275,53 @@ pub fn apply(cavity: &Cavity, placement: &Placement) -> (Cavity, [u8; MAX_VERTIC
             covered |= 1 << (placement.facet_dart[f] >> 2);
         }
     }
-    let mut after = Cavity::empty();
-    // Vertices: the survivors in order, then the new ones.
     let mut buried = 0u64;
     for &k in &table.buried_corners {
         buried |= 1 << placement.corners[k];
     }
+    let mut after = Cavity::empty();
+    let mut before = [0u8; MAX_VERTICES];
+    let renamed = keep_vertices(cavity, buried, table.new_corners.len() as u8, &mut after, &mut before);
+    let quad_of = keep_quads(cavity, covered, &renamed, &mut after);
+    add_open_facets(cavity, placement, &renamed, &quad_of, &mut after);
+    keep_pairs(cavity, buried, &renamed, &mut after);
+    for &[i, j] in &table.blocks {
+        let a = renamed[usize::from(placement.corners[i])];
+        let b = renamed[usize::from(placement.corners[j])];
+        after.block(a, b);
+    }
+    (after, before)
+}
+
+/// Per vertex before, old or new: the vertex after, or [`NEW`] if it is buried.
+type Renamed = [u8; MAX_VERTICES + 4];
+
+/// Numbers the vertices after the flip: the survivors in order, then the new ones.
+#[inline]
+fn keep_vertices(
+    cavity: &Cavity,
+    buried: u64,
+    n_new: u8,
+    after: &mut Cavity,
+    before: &mut [u8; MAX_VERTICES],
+) -> Renamed {
+    let mut renamed = [NEW; MAX_VERTICES + 4];
     // A new vertex of a full cavity has no bit in `buried` (a corner flip of 64 vertices brings one before it buries one),
     // and needs none: no flip buries what it brings.
-    let brought = cavity.n_vertices..cavity.n_vertices + table.new_corners.len() as u8;
-    let mut before = [0u8; MAX_VERTICES];
-    let mut renamed = [NEW; MAX_VERTICES + 4];
+    let brought = cavity.n_vertices..cavity.n_vertices + n_new;
     for v in (0..cavity.n_vertices).filter(|&v| buried >> v & 1 == 0).chain(brought) {
         renamed[usize::from(v)] = after.n_vertices;
         before[usize::from(after.n_vertices)] = v;
         after.n_vertices += 1;
     }
-    // Quads: the survivors in order, then the open facets.
-    let mut quad_of = [NEW; crate::cavity::MAX_QUADS];
+    renamed
+}
+
+/// Takes over the quads that the hex does not cover, in order, joined to each other as before. Per quad before: the quad
+/// after, or [`NEW`] if it is covered.
+#[inline]
+fn keep_quads(cavity: &Cavity, covered: u64, renamed: &Renamed, after: &mut Cavity) -> [u8; MAX_QUADS] {
+    let mut quad_of = [NEW; MAX_QUADS];
     for q in 0..cavity.n_quads {
         if covered >> q & 1 == 0 {
             quad_of[usize::from(q)] = after.n_quads;
@@ -303,6 +332,7 @@ pub fn apply(cavity: &Cavity, placement: &Placement) -> (Cavity, [u8; MAX_VERTIC
             after.n_quads += 1;
         }
     }
+    // Twins need the numbers of both quads.
     for q in 0..cavity.n_quads {
         let new = quad_of[usize::from(q)];
         if new == NEW {
@@ -316,6 +346,19 @@ pub fn apply(cavity: &Cavity, placement: &Placement) -> (Cavity, [u8; MAX_VERTIC
             }
         }
     }
+    quad_of
+}
+
+/// Adds the facets of the hex that cover nothing, in their order, joined to each other and to the rim of the patch.
+#[inline]
+fn add_open_facets(
+    cavity: &Cavity,
+    placement: &Placement,
+    renamed: &Renamed,
+    quad_of: &[u8; MAX_QUADS],
+    after: &mut Cavity,
+) {
+    let table = &KINDS[placement.flip.kind as usize];
     let first_new = after.n_quads;
     let new_quad = |f: usize| first_new + table.open.iter().position(|&g| g == f).expect("facet is open") as u8;
     for &f in &table.open {
@@ -339,39 +382,37 @@ pub fn apply(cavity: &Cavity, placement: &Placement) -> (Cavity, [u8; MAX_VERTIC
             }
         }
     }
-    // Pairs: the old blocked ones among the survivors, and what the hex and the covered quads use.
+}
+
+/// Takes over the blocked pairs among the survivors.
+#[inline]
+fn keep_pairs(cavity: &Cavity, buried: u64, renamed: &Renamed, after: &mut Cavity) {
     if buried == 0 {
         after.blocked[..cavity.n_vertices()].copy_from_slice(&cavity.blocked[..cavity.n_vertices()]);
-    } else {
-        for v in 0..cavity.n_vertices {
-            let v2 = renamed[usize::from(v)];
-            if v2 == NEW {
-                continue;
-            }
-            let mut row = cavity.blocked[usize::from(v)] & !buried;
-            // Close the gaps of the buried vertices, highest first.
-            let mut holes = buried;
-            while holes != 0 {
-                let hole = 63 - holes.leading_zeros();
-                let low = (1u64 << hole) - 1;
-                row = (row & low) | (row >> 1 & !low);
-                holes &= !(1 << hole);
-            }
-            after.blocked[usize::from(v2)] = row;
+        return;
+    }
+    for v in 0..cavity.n_vertices {
+        let v2 = renamed[usize::from(v)];
+        if v2 == NEW {
+            continue;
         }
+        let mut row = cavity.blocked[usize::from(v)] & !buried;
+        // Close the gaps of the buried vertices, highest first.
+        let mut holes = buried;
+        while holes != 0 {
+            let hole = 63 - holes.leading_zeros();
+            let low = (1u64 << hole) - 1;
+            row = (row & low) | (row >> 1 & !low);
+            holes &= !(1 << hole);
+        }
+        after.blocked[usize::from(v2)] = row;
     }
-    for &[i, j] in &table.blocks {
-        let a = renamed[usize::from(placement.corners[i])];
-        let b = renamed[usize::from(placement.corners[j])];
-        after.block(a, b);
-    }
-    (after, before)
 }
 
 /// All legal flips of a cavity with at most `max_quads` quads afterwards, in ascending order.
 pub fn legal_flips(cavity: &Cavity, max_quads: usize) -> Vec<Placement> {
     let (marked, degrees) = (cavity.marked(), cavity.degrees());
-    candidates(cavity, max_quads.min(crate::cavity::MAX_QUADS))
+    candidates(cavity, max_quads.min(MAX_QUADS))
         .filter_map(|flip| place(cavity, &degrees, flip))
         .filter(|placement| is_legal(placement, &marked))
         .collect()

@@ -61,7 +61,8 @@ impl Front {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sweep::{SweepOptions, sweep};
+    use crate::sweep::sweep;
+    use crate::sweep_options::SweepOptions;
     use crate::test_surfaces::judged;
     use hexfill_mesh::Context;
     use hexfill_mesh::generate::{octagonal_spindle, random_sphere, refined, schneiders_pyramid};

@@ -222,7 +222,7 @@ impl Frame {
 }
 
 impl Lattice {
-    pub fn new(coarse: &Coarse, n_fine: u32) -> Self {
+    pub(crate) fn new(coarse: &Coarse, n_fine: u32) -> Self {
         let mut lattice = Self {
             n_vertices: n_fine,
             corner: coarse.vertices.iter().enumerate().map(|(v, fine)| (v as u32, fine.0)).collect(),
@@ -258,18 +258,18 @@ impl Lattice {
         lattice
     }
 
-    pub fn n_vertices(&self) -> u32 {
+    pub(crate) fn n_vertices(&self) -> u32 {
         self.n_vertices
     }
 
     /// Point number `i` inside the edge from `v` to `w`, counted from `v`; the edge is one of a hex whose points were asked for.
-    pub fn point_on_edge(&self, v: u32, w: u32, i: usize) -> u32 {
+    pub(crate) fn point_on_edge(&self, v: u32, w: u32, i: usize) -> u32 {
         let points = &self.edge[&pair(v, w)];
         if v < w { points[i] } else { points[points.len() - 1 - i] }
     }
 
     /// The points of a hex cut into `a x b x c`, x fastest.
-    pub fn points_of(&mut self, hex: &[u32; 8], [a, b, c]: [u32; 3]) -> Vec<u32> {
+    pub(crate) fn points_of(&mut self, hex: &[u32; 8], [a, b, c]: [u32; 3]) -> Vec<u32> {
         let sizes = [a, b, c];
         let mut points = vec![u32::MAX; (a as usize + 1) * (b as usize + 1) * (c as usize + 1)];
         let index = |p: [u32; 3]| ((p[2] * (b + 1) + p[1]) * (a + 1) + p[0]) as usize;

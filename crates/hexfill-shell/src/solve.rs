@@ -25,7 +25,7 @@ pub(crate) struct Sweep {
 
 impl Sweep {
     /// Whether nothing is left to fill.
-    pub fn is_complete(&self) -> bool {
+    pub(crate) fn is_complete(&self) -> bool {
         self.void.quads.is_empty()
     }
 

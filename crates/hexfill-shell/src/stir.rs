@@ -9,7 +9,7 @@
 use crate::dart::opposite;
 use crate::front::{Front, Mark, NONE};
 use crate::glue::Patch;
-use crate::sweep::SweepOptions;
+use crate::sweep_options::SweepOptions;
 use crate::sweeper::Sweeper;
 use hexfill_mesh::{Context, Random, StopReason};
 

@@ -1,7 +1,8 @@
 //! Sweeps of whole surfaces, every result judged.
 
 use crate::front::Front;
-use crate::sweep::{SweepOptions, Swept, sweep};
+use crate::sweep::{Swept, sweep};
+use crate::sweep_options::SweepOptions;
 use crate::test_surfaces::{judged, read_obj, torus_at, voxels};
 use hexfill_mesh::generate::{random_sphere, voxel_surface};
 use hexfill_mesh::{Context, QuadSurface, Random};

@@ -14,7 +14,7 @@ use crate::dart::{next, opposite};
 use crate::front::{Front, Mark};
 use crate::glue::Patch;
 use crate::lens::{LensFinder, Stamps};
-use crate::sweep::SweepOptions;
+use crate::sweep_options::SweepOptions;
 use hexfill_mesh::{Context, Random, StopReason};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;

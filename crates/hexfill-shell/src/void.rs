@@ -42,7 +42,7 @@ pub(crate) struct Mark {
 
 impl Void {
     /// Nothing glued yet.
-    pub fn new(coarse: &Coarse) -> Self {
+    pub(crate) fn new(coarse: &Coarse) -> Self {
         let surface = &coarse.surface;
         let quads: Vec<[u32; 4]> = surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
         let mut pairs = PairTable::default();
@@ -63,21 +63,21 @@ impl Void {
     }
 
     #[inline]
-    pub fn origin(&self, d: u32) -> u32 {
+    pub(crate) fn origin(&self, d: u32) -> u32 {
         self.quads[(d >> 2) as usize][(d & 3) as usize]
     }
 
     #[inline]
-    pub fn target(&self, d: u32) -> u32 {
+    pub(crate) fn target(&self, d: u32) -> u32 {
         self.origin(next(d))
     }
 
-    pub fn n_darts(&self) -> u32 {
+    pub(crate) fn n_darts(&self) -> u32 {
         4 * self.quads.len() as u32
     }
 
     /// One hex on every quad of the front: what is inside is then free of the surface. Always proper.
-    pub fn pillow(&mut self) {
+    pub(crate) fn pillow(&mut self) {
         let mut inner = FxHashMap::default();
         for quad in &mut self.quads {
             let outer = *quad;
@@ -100,12 +100,12 @@ impl Void {
     }
 
     /// The void as a front that flips and plugs work on; `surface` are the quads that are never merged.
-    pub fn to_front(&self, surface: &[[u32; 4]]) -> Option<Front> {
+    pub(crate) fn to_front(&self, surface: &[[u32; 4]]) -> Option<Front> {
         Front::try_from_parts(self.n_vertices, surface, &self.hexes, &self.quads).ok()
     }
 
     /// [`to_front`](Self::to_front) that knows how many hexes its edges want.
-    pub fn to_wanting_front(&self, surface: &[[u32; 4]]) -> Option<Front> {
+    pub(crate) fn to_wanting_front(&self, surface: &[[u32; 4]]) -> Option<Front> {
         let mut front = self.to_front(surface)?;
         let mut wanted: FxHashMap<(u32, u32), f32> = FxHashMap::default();
         for d in 0..self.n_darts() {
@@ -117,7 +117,7 @@ impl Void {
 
     /// This void after hexes were added to it as a front without merging any vertices: an edge of the old front wants what the new
     /// hexes at it leave, a new one 4 hexes in all. Every edge that is new has length 1.
-    pub fn after(&self, front: &Front) -> Option<Self> {
+    pub(crate) fn after(&self, front: &Front) -> Option<Self> {
         let mut wanted: FxHashMap<(u32, u32), f32> = FxHashMap::default();
         for d in 0..self.n_darts() {
             wanted.insert((self.origin(d), self.target(d)), self.wanted[d as usize]);
@@ -149,20 +149,20 @@ impl Void {
     }
 
     /// Adds a hex; false if a pair of its vertices has another kind already.
-    pub fn push_hex(&mut self, hex: [u32; 8]) -> bool {
+    pub(crate) fn push_hex(&mut self, hex: [u32; 8]) -> bool {
         self.hexes.push(hex);
         let journal = &mut self.journal;
         self.pairs.add_hex(&hex, |old| journal.push(old))
     }
 
     /// A state to come back to, before the first hex of a move; the one before loses its meaning.
-    pub fn mark(&mut self) -> Mark {
+    pub(crate) fn mark(&mut self) -> Mark {
         self.journal.clear();
         Mark { n_hexes: self.hexes.len(), n_vertices: self.n_vertices }
     }
 
     /// Takes the hexes and vertices since the last mark back.
-    pub fn take_back(&mut self, mark: Mark) {
+    pub(crate) fn take_back(&mut self, mark: Mark) {
         while let Some(old) = self.journal.pop() {
             self.pairs.restore(old);
         }
@@ -172,7 +172,7 @@ impl Void {
 
     /// Replaces the front. `edges` has for every dart of the new quads what is wanted there and its length.
     /// `None`, and nothing changes, if the quads do not close to a surface.
-    pub fn set_front(&mut self, quads: Vec<[u32; 4]>, wanted: Vec<f32>, length: Vec<u32>) -> Option<()> {
+    pub(crate) fn set_front(&mut self, quads: Vec<[u32; 4]>, wanted: Vec<f32>, length: Vec<u32>) -> Option<()> {
         let twin = pair_darts(&quads)?;
         (self.quads, self.twin, self.wanted, self.length) = (quads, twin, wanted, length);
         Some(())

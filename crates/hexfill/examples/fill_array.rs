@@ -17,8 +17,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let made = fill_placed(&problem, &FillOptions::default(), &PlaceOptions::default(), &Context::default())?;
     let (filled, placed) = made.meshes.first().ok_or("no mesh was found")?;
     let placed = placed.as_ref().ok_or("the surface has no positions")?;
-    println!("{} hexes by {}: {}", filled.mesh.n_hexes(), filled.route.words(), placed.report());
-    let mut worst: Vec<(usize, f64)> = placed.cells.iter().map(|c| c.certified_lower).enumerate().collect();
+    println!("{} hexes by {}: {}", filled.mesh().n_hexes(), filled.route().words(), placed.report());
+    let mut worst: Vec<(usize, f64)> = placed.cells().iter().map(|c| c.certified_lower).enumerate().collect();
     worst.sort_by(|a, b| a.1.total_cmp(&b.1));
     for (hex, scaled_jacobian) in worst.into_iter().take(5) {
         println!("h{hex}: scaled Jacobian at least {scaled_jacobian:.4}");

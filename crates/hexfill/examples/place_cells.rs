@@ -7,8 +7,8 @@
 //! are given: those of another cell. `BOUND=1` stops after the star bound and writes nothing.
 
 use hexfill::Context;
-use hexfill::construct::{Cell, Pattern, Role, Side};
-use hexfill::embed::{Embedding, Objective, Options, embed, star_bounds};
+use hexfill::unstable::construct::{Cell, Pattern, Role, Side};
+use hexfill::unstable::embed::{Embedding, Objective, Options, embed, star_bounds};
 use hexfill_mesh::{HexMesh, Random};
 use std::time::{Duration, Instant};
 

@@ -1,18 +1,19 @@
 //! **hexfill fills a closed quad surface with hexahedra and leaves the surface exactly as it is.**
 //!
-//! This is the facade: [`Problem::load`] takes a file, a catalogue name or a signature, [`fill`] picks the strategy
-//! and returns meshes the independent judge has accepted. The rooms behind it are re-exported.
+//! Say what to fill ([`Problem`]: a file, arrays, a name of the [`catalog`], a signature), fill it ([`fill_placed()`], or [`fill()`] for
+//! connectivity alone), look at what came ([`FillReport`], [`GeometryReport`]) and [`save`] it. Every mesh has been accepted by a judge that
+//! shares no code with what made it.
 //!
 //! ```
 //! use hexfill::{Context, FillOptions, Problem, fill};
 //!
-//! let problem = Problem::load(":schneiders-pyramid", None)?;
+//! let problem = Problem::named("schneiders-pyramid")?;
 //! let result = fill(&problem, &FillOptions::default(), &Context::default())?;
-//! assert_eq!(result.meshes[0].mesh.n_hexes(), 36);
+//! assert_eq!(result.meshes[0].mesh().n_hexes(), 36);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Arrays in, positions out, a file written:
+//! Arrays in (quads by 0-based vertex ids, in any orientation), positions out, a file written:
 //!
 //! ```
 //! use hexfill::io::MeshData;
@@ -36,7 +37,7 @@
 //! use hexfill::{Context, FillOptions, Problem, ProblemError, StopReason, fill};
 //! use std::sync::atomic::AtomicBool;
 //!
-//! let problem = Problem::load(":geode", None)?;
+//! let problem = Problem::named("geode")?;
 //! let stop = AtomicBool::new(true); // set by another thread, say
 //! let ctx = Context { cancel: Some(&stop), ..Context::default() };
 //! assert_eq!(fill(&problem, &FillOptions::default(), &ctx)?.stop, StopReason::Cancelled);
@@ -49,48 +50,103 @@
 //! }
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! Whether there is anything to find is answered before the work, by theorem:
+//!
+//! ```
+//! use hexfill::{Existence, Problem, existence};
+//!
+//! let pyramid = Problem::named("schneiders-pyramid")?;
+//! assert!(matches!(existence(pyramid.surface(), pyramid.points()), Existence::Exists { .. }));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # What is stable
+//! What this crate defines, and [`io`] and [`mesh`], whose types it takes and returns. The rooms behind it are under [`unstable`]: use them for
+//! research, and pin the version.
 
-pub mod catalog;
-mod choose;
-mod components;
-mod describe;
+mod best;
+mod check;
 mod doctor;
-mod effort;
+mod file;
 mod fill;
-mod geometry;
-mod hopeless;
-mod last_resort;
-mod limits;
-mod no_room;
-mod placed_fill;
-mod placement;
+mod info;
+mod place;
 mod problem;
 mod regions;
-mod scale;
+mod report;
 mod simplify;
-mod stored;
 mod threads;
 
-pub use choose::Prefer;
-pub use describe::{ChordInfo, MeshInfo, PartInfo, SheetInfo, SurfaceInfo, describe_mesh, describe_surface};
-pub use doctor::{Cure, CureOptions, Diagnosis, crossing_quads, cure, doctor};
-pub use effort::Effort;
-pub use fill::{
-    FillError, FillOptions, FillReport, FillResult, Filled, InteriorFrom, Route, Strategy, check_fillable, fill,
-    mesh_data, save,
-};
-pub use geometry::{GeometryReport, Placed, boundary_points, place, place_best, start_positions};
+pub use best::choice::{Candidate, Choice, Outcome};
+pub use best::{PlaceOptions, PlacedFill, fill_placed};
+pub use check::{check_mesh, with_judged};
+pub use doctor::crossings::crossing_quads;
+pub use doctor::cure::{Cure, CureOptions, cure};
+pub use doctor::{Diagnosis, doctor};
+pub use file::{mesh_data, save};
+pub use fill::attempt::Attempt;
+pub use fill::error::{FillError, check_fillable};
+pub use fill::fill;
+pub use fill::filled::{FillResult, Filled, Route};
+pub use fill::options::{Effort, FillOptions, InteriorFrom, Prefer, Strategy};
+pub use hexfill_check::{CellQuality, Level, Options as CheckOptions, Report as CheckReport, Rules};
+pub use hexfill_construct::{CellChoice, ConstructError, Existence, GivenTets, TetgenTets, existence};
+pub use hexfill_embed::{EmbedError, EmbedReport, Objective, Options as EmbedOptions};
 pub use hexfill_mesh::{Context, Progress, StopReason};
-pub use hexfill_search::{Collapse, SimplifyOptions, SimplifyReport};
+pub use hexfill_search::{Atlas, AtlasError, Collapse, GrowOptions, SimplifyOptions, SimplifyReport};
 pub use hexfill_shell::{BoundaryLayers, ShellOptions};
-pub use limits::{LimitsInfo, Named};
-pub use placed_fill::{PlaceOptions, PlacedFill, fill_placed};
-pub use problem::{Problem, ProblemError, is_named};
-pub use regions::{FilledRegions, Region, RegionsError, fill_regions, has_regions, regions};
+pub use info::existence::ExistenceInfo;
+pub use info::limits::{LimitsInfo, Named};
+pub use info::mesh::{MeshInfo, SheetInfo, describe_mesh};
+pub use info::surface::{ChordInfo, PartInfo, SurfaceInfo, describe_surface};
+pub use place::embed_mesh::embed_mesh;
+pub use place::place;
+pub use place::placed::Placed;
+pub use place::report::GeometryReport;
+pub use problem::{Problem, ProblemError, catalog, is_named};
+pub use regions::error::RegionsError;
+pub use regions::fill::{FilledRegions, fill_regions};
+pub use regions::{Region, has_regions, regions};
+pub use report::FillReport;
 pub use simplify::{SimplifiedData, SimplifyError, default_balls, simplify};
 pub use threads::{MAX_THREADS, ThreadsError, with_threads};
-pub use {
-    hexfill_check as check, hexfill_construct as construct, hexfill_doctor as diagnosis, hexfill_embed as embed,
-    hexfill_enumerate as enumerate, hexfill_io as io, hexfill_mesh as mesh, hexfill_search as search,
-    hexfill_shell as shell, hexfill_view as view,
-};
+pub use {hexfill_io as io, hexfill_mesh as mesh};
+
+/// The rooms behind the facade, whole: they change with every version.
+///
+/// All meshes of n cubes, a look-up in the atlas, a certificate that another program can verify:
+///
+/// ```
+/// use hexfill::unstable::check::{Judged, certify, verify_certificate};
+/// use hexfill::unstable::enumerate::{LevelOptions, Params, Plan, Rule, Wanted, run_whole};
+/// use hexfill::unstable::search::Cavity;
+/// use hexfill::{Atlas, Context, Problem};
+///
+/// let ctx = Context::default();
+/// let plan = Plan::prepare(&Params::new(4, Rule::Strict), &LevelOptions::default(), &ctx)?;
+/// assert_eq!(run_whole(&plan, 1, Wanted::default(), &ctx)?.0.classes, 24);
+///
+/// let pyramid = Problem::named("schneiders-pyramid")?;
+/// let (cavity, _) = Cavity::from_surface(pyramid.surface()).expect("a small sphere");
+/// assert_eq!(Atlas::embedded().balls_for(&cavity).map(|ball| ball.n_hexes()).min(), Some(36));
+///
+/// let points = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]];
+/// let points = points.map(|p| p.map(f64::from));
+/// let judged = Judged::connectivity(8, &[[0, 1, 2, 3, 4, 5, 6, 7]]).with_points(&points);
+/// let certificate = certify(&judged, &ctx)?.to_json();
+/// assert_eq!(verify_certificate(&certificate, &judged, &ctx)?.hexes, 1);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub mod unstable {
+    pub use {
+        hexfill_check as check, hexfill_construct as construct, hexfill_doctor as diagnosis, hexfill_embed as embed,
+        hexfill_enumerate as enumerate, hexfill_ledger as ledger, hexfill_prove as prove, hexfill_search as search,
+        hexfill_shell as shell, hexfill_view as view,
+    };
+}
+
+/// The programs of the book.
+#[cfg(doctest)]
+#[doc = include_str!("../../../book/src/library.md")]
+struct Library;

@@ -1,14 +1,11 @@
 //! `simplify`: a mesh with fewer hexes and the same boundary, judged before it is given out.
 
-use crate::fill::FillOptions;
 use hexfill_check::{Judged, Level, Parts, judge};
-use hexfill_construct::CellChoice;
 use hexfill_io::{MeshData, TagOn};
 use hexfill_mesh::{Context, HexMesh, HexMeshError, VertexId};
 use hexfill_search::{
     Atlas, Simplified, SimplifyOptions, SimplifyReport, collapse, simplification_atlas, simplify as simplify_mesh,
 };
-use std::time::Instant;
 
 /// Why a mesh cannot be simplified.
 #[derive(Debug, thiserror::Error)]
@@ -51,6 +48,17 @@ pub fn default_balls(hexes: usize) -> u64 {
 /// Collapses closed sheets and columns and replaces balls of hexes by smaller fillings from the atlas (without one:
 /// [`simplification_atlas`]); the boundary stays as it is, its positions bit for bit. What comes back has passed levels 1 to 3 of the judge, its boundary being the input's; if
 /// nothing smaller was found it is the input. Embed again afterwards: new interior points only have means of positions.
+///
+/// ```
+/// use hexfill::{Context, FillOptions, Problem, SimplifyOptions, Strategy, fill, mesh_data, simplify};
+///
+/// let (cube, ctx) = (Problem::named("cube")?, Context::default());
+/// let constructed = fill(&cube, &FillOptions::default().with_strategy(Strategy::Construct), &ctx)?;
+/// let data = mesh_data(&cube, constructed.meshes[0].mesh(), None);
+/// let made = simplify(&data, &SimplifyOptions::default().with_balls(100), None, &ctx)?;
+/// assert!(made.report.after < made.report.before && made.data.hexes.len() == made.report.after);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// [`SimplifyError`].
@@ -109,33 +117,16 @@ pub fn simplify(
 }
 
 /// The mesh made smaller. An atlas is grown only if there are balls to look up.
-fn simplified(mesh: &HexMesh, options: &SimplifyOptions, atlas: Option<&Atlas>, ctx: &Context<'_>) -> Simplified {
+pub(crate) fn simplified(
+    mesh: &HexMesh,
+    options: &SimplifyOptions,
+    atlas: Option<&Atlas>,
+    ctx: &Context<'_>,
+) -> Simplified {
     if options.balls == 0 {
         return collapse(mesh, options.collapse, ctx);
     }
     simplify_mesh(mesh, atlas.unwrap_or_else(|| simplification_atlas()), options, ctx)
-}
-
-/// A construction made smaller as the options of a fill ask for; its boundary comes first and keeps its ids.
-/// The caller judges.
-pub(crate) fn simplify_construction(
-    mesh: HexMesh,
-    start: Option<Vec<[f64; 3]>>,
-    options: &FillOptions,
-    ctx: &Context<'_>,
-    tried: &mut Vec<String>,
-) -> (HexMesh, Option<Vec<[f64; 3]>>) {
-    let Some(how) = &options.simplify else { return (mesh, start) };
-    let left = ctx.deadline.map(|end| end.saturating_duration_since(Instant::now()));
-    let share = if options.cells == CellChoice::Fewest { 0.9 } else { 0.5 };
-    let limited = left.map_or(*ctx, |left| ctx.with_time_limit(left.mul_f64(share)));
-    let made = simplified(&mesh, how, options.atlas.as_deref(), &limited);
-    let SimplifyReport { before, after, sheets, columns, balls, .. } = made.report;
-    tried.push(format!(
-        "simplification from {before} to {after} hexes over {balls} balls, {sheets} sheets and {columns} columns collapsed"
-    ));
-    let start = start.map(|points| carried_positions(&made.mesh, &made.origin, &points));
-    (made.mesh, start)
 }
 
 /// Positions after a simplification: those of vertices that stayed, bit for bit; new vertices move to the mean of their

@@ -30,6 +30,15 @@ pub enum ThreadsError {
 
 /// Does the work on this many threads, `None`: one a core (or what `RAYON_NUM_THREADS` says). Results do not depend on it.
 ///
+/// ```
+/// use hexfill::{Context, FillOptions, Problem, fill, with_threads};
+/// let geode = Problem::named("geode")?;
+/// let filled = |n| with_threads(Some(n), || fill(&geode, &FillOptions::default(), &Context::default()));
+/// let (one, two) = (filled(1)??, filled(2)??);
+/// assert_eq!(one.meshes[0].mesh().hexes_raw(), two.meshes[0].mesh().hexes_raw());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`ThreadsError`]; the work has not begun then.
 pub fn with_threads<T: Send>(threads: Option<usize>, work: impl FnOnce() -> T + Send) -> Result<T, ThreadsError> {

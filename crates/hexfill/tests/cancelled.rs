@@ -1,7 +1,7 @@
 //! A fill that is cancelled, at whatever progress report, returns a mesh that the judge accepts or none, and says why it ended.
 
-use hexfill::check::{Judged, Level, judge};
 use hexfill::io::MeshData;
+use hexfill::unstable::check::{Judged, Level, judge};
 use hexfill::{
     BoundaryLayers, Context, FillOptions, PlaceOptions, PlacedFill, Problem, Progress, StopReason, Strategy,
     fill_placed,
@@ -72,14 +72,14 @@ fn cancelled_at(problem: &Problem, options: &FillOptions, k: u64) -> (PlacedFill
 
 /// The judge accepts every mesh, with the positions of the surface bit for bit.
 fn accept(problem: &Problem, made: &PlacedFill) {
-    let quads: Vec<[u32; 4]> = problem.surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
+    let quads: Vec<[u32; 4]> = problem.surface().quads_raw();
     for (filled, placed) in &made.meshes {
-        let hexes = filled.mesh.hexes_raw();
-        let judged = Judged::connectivity(filled.mesh.n_vertices(), &hexes).with_surface(&quads);
-        let options = hexfill::check::Options::default().up_to(Level::L3);
+        let hexes = filled.mesh().hexes_raw();
+        let judged = Judged::connectivity(filled.mesh().n_vertices(), &hexes).with_surface(&quads);
+        let options = hexfill::unstable::check::Options::default().up_to(Level::L3);
         assert!(judge(&judged, &options, &Context::default()).passed(Level::L3));
-        if let (Some(placed), Some(points)) = (placed, &problem.points) {
-            assert_eq!(&placed.points[..points.len()], &points[..]);
+        if let (Some(placed), Some(points)) = (placed, problem.points()) {
+            assert_eq!(&placed.points()[..points.len()], points);
         }
     }
 }
@@ -133,14 +133,13 @@ fn hard_surfaces_are_constructed_if_nothing_else_came_first() {
 #[test]
 fn a_single_engine_that_is_cancelled_brings_a_mesh_or_stops_cleanly() {
     let layers = BoundaryLayers { count: 2, height: None, growth: 1.0 };
-    let all = FillOptions::default;
     let options = [
-        FillOptions { strategy: Strategy::Shell, ..all() },
-        FillOptions { strategy: Strategy::Atlas, ..all() },
-        FillOptions { strategy: Strategy::Construct, ..all() },
-        FillOptions { count: 3, ..all() },
-        FillOptions { max_hexes: 10, ..all() },
-        FillOptions { layers: Some(layers), ..all() },
+        FillOptions::default().with_strategy(Strategy::Shell),
+        FillOptions::default().with_strategy(Strategy::Atlas),
+        FillOptions::default().with_strategy(Strategy::Construct),
+        FillOptions::default().with_count(3),
+        FillOptions::default().with_max_hexes(10),
+        FillOptions::default().with_layers(layers),
     ];
     let problem = spiky(2);
     for (i, options) in options.iter().enumerate() {

@@ -1,8 +1,8 @@
 //! Several components: apart, nested, inside out.
 
-use hexfill::check::{Judged, Level, Options, judge};
 use hexfill::io::MeshData;
 use hexfill::mesh::cube::{FACETS, POSITIONS};
+use hexfill::unstable::check::{Judged, Level, Options, judge};
 use hexfill::{Context, FillOptions, Problem, fill};
 
 /// Axis-parallel cubes given by edge length, lowest corner and whether they are turned inside out.
@@ -30,12 +30,12 @@ fn filled(data: &MeshData) -> (Problem, hexfill::FillResult) {
 fn components_apart_are_filled_one_by_one() {
     for turned in [false, true] {
         let (problem, result) = filled(&cubes(&[(1.0, 0.0, false), (2.0, 5.0, turned), (1.0, -7.0, false)]));
-        assert_eq!(problem.notes.len(), usize::from(turned));
-        let mesh = &result.meshes[0].mesh;
+        assert_eq!(problem.notes().len(), usize::from(turned));
+        let mesh = result.meshes[0].mesh();
         assert_eq!((mesh.n_hexes(), mesh.n_vertices()), (3, 24));
         let hexes = mesh.hexes_raw();
-        let quads: Vec<[u32; 4]> = problem.surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
-        let points = problem.points.as_deref().unwrap();
+        let quads: Vec<[u32; 4]> = problem.surface().quads_raw();
+        let points = problem.points().unwrap();
         let judged = Judged::connectivity(24, &hexes).with_surface(&quads).with_points(points);
         let report = judge(&judged, &Options::default(), &Context::default());
         assert!(report.passed(Level::L5), "{report}");
@@ -46,10 +46,10 @@ fn components_apart_are_filled_one_by_one() {
 fn a_cavity_is_left_empty() {
     for turned in [false, true] {
         let (problem, result) = filled(&cubes(&[(5.0, 0.0, false), (1.0, 2.0, turned)]));
-        assert_eq!(problem.notes.len(), usize::from(!turned), "the inner quads face the cavity");
-        let mesh = &result.meshes[0].mesh;
+        assert_eq!(problem.notes().len(), usize::from(!turned), "the inner quads face the cavity");
+        let mesh = result.meshes[0].mesh();
         let hexes = mesh.hexes_raw();
-        let quads: Vec<[u32; 4]> = problem.surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
+        let quads: Vec<[u32; 4]> = problem.surface().quads_raw();
         let judged = Judged::connectivity(mesh.n_vertices(), &hexes).with_surface(&quads);
         let report = judge(&judged, &Options::default(), &Context::default());
         assert!(report.passed(Level::L3), "{report}");

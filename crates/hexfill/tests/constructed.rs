@@ -1,18 +1,17 @@
 //! Constructed meshes have coordinates: det J > 0 certified in every hex, from the surface alone.
 
-use hexfill::embed::Objective;
-use hexfill::{Context, FillOptions, Placed, Problem, Route, Strategy};
+use hexfill::{Context, FillOptions, Objective, Placed, Problem, Route, Strategy};
 use hexfill_mesh::generate::torus;
 
 fn placed(problem: &Problem, objective: Option<Objective>) -> Placed {
-    let options = FillOptions { strategy: Strategy::Construct, ..FillOptions::default() };
+    let options = FillOptions::default().with_strategy(Strategy::Construct);
     let ctx = Context::default();
     let mut result = hexfill::fill(problem, &options, &ctx).unwrap();
-    assert_eq!(result.meshes[0].route, Route::Construction);
-    let boundary = hexfill::boundary_points(problem).unwrap();
-    let how = objective.map(hexfill::embed::Options::new);
-    let placed = hexfill::place(&mut result.meshes[0], problem, &boundary, how.as_ref(), &ctx);
-    assert_eq!(placed.points[..boundary.len()], boundary[..]);
+    assert_eq!(result.meshes[0].route(), Route::Construction);
+    let how = objective.map(hexfill::EmbedOptions::new);
+    let (_, placed) = hexfill::place(result.meshes.remove(0), problem, how.as_ref(), &ctx).unwrap();
+    let boundary = problem.positions().unwrap();
+    assert_eq!(placed.points()[..boundary.len()], boundary[..]);
     placed
 }
 
@@ -26,7 +25,7 @@ fn round_torus(n: u32, m: u32) -> Problem {
             [(3.0 + u) * c, (3.0 + u) * s, t]
         })
         .collect();
-    let quads = surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
+    let quads = surface.quads_raw();
     let data = hexfill::io::MeshData { points, quads, has_coordinates: true, ..Default::default() };
     Problem::from_data("torus", &data).unwrap()
 }

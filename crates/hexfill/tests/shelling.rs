@@ -5,9 +5,7 @@ use hexfill::{BoundaryLayers, Context, FillOptions, PlaceOptions, Problem, Route
 /// The boundary of filled cells with its positions.
 fn voxels(size: [usize; 3], filled: impl Fn([usize; 3]) -> bool) -> Problem {
     let (surface, points) = hexfill_mesh::generate::voxels(size, filled).unwrap();
-    let mut problem = Problem::from_surface("test", surface);
-    problem.points = Some(points.into_iter().map(|p| p.map(f64::from)).collect());
-    problem
+    Problem::new("test", surface, points.into_iter().map(|p| p.map(f64::from)).collect()).unwrap()
 }
 
 /// Hexes and certified worst scaled Jacobian of what `fill` makes.
@@ -15,10 +13,10 @@ fn filled(problem: &Problem, options: &FillOptions) -> (usize, f64, Vec<[u32; 8]
     let how = PlaceOptions::default();
     let made = fill_placed(problem, options, &how, &Context::default()).unwrap();
     let (filled, placed) = &made.meshes[0];
-    assert_eq!(filled.route, Route::Shelling);
+    assert_eq!(filled.route(), Route::Shelling);
     let placed = placed.as_ref().unwrap();
-    assert_eq!(&placed.points[..problem.surface.n_vertices()], &problem.points.as_ref().unwrap()[..]);
-    (filled.mesh.n_hexes(), if placed.is_certified() { placed.worst() } else { -1.0 }, filled.mesh.hexes_raw())
+    assert_eq!(&placed.points()[..problem.surface().n_vertices()], problem.points().unwrap());
+    (filled.mesh().n_hexes(), if placed.is_certified() { placed.worst() } else { -1.0 }, filled.mesh().hexes_raw())
 }
 
 #[test]
@@ -62,7 +60,7 @@ fn real_surfaces_get_a_few_good_hexes_a_quad_for_any_number_of_threads() {
 fn boundary_layers_lie_under_the_whole_surface() {
     let problem = voxels([2, 2, 2], |_| true);
     let layers = BoundaryLayers { count: 3, height: Some(0.05), growth: 1.5 };
-    let options = FillOptions { layers: Some(layers), strategy: Strategy::Shell, ..FillOptions::default() };
+    let options = FillOptions::default().with_strategy(Strategy::Shell).with_layers(layers);
     let (hexes, worst, _) = filled(&problem, &options);
     // Three layers and what is left of the pillow on 24 quads, and the 8 cubes.
     assert_eq!(hexes, 4 * 24 + 8);
@@ -76,7 +74,7 @@ fn a_cancelled_shelling_returns_nothing_or_a_mesh() {
     let cancel = std::sync::atomic::AtomicBool::new(true);
     let ctx = Context { cancel: Some(&cancel), ..Context::default() };
     let how = PlaceOptions::default();
-    let only = FillOptions { strategy: Strategy::Shell, ..FillOptions::default() };
+    let only = FillOptions::default().with_strategy(Strategy::Shell);
     let made = fill_placed(&problem, &only, &how, &ctx).unwrap();
     assert_eq!(made.stop, hexfill::StopReason::Cancelled);
     assert!(made.meshes.is_empty());
@@ -84,15 +82,16 @@ fn a_cancelled_shelling_returns_nothing_or_a_mesh() {
 
 #[test]
 fn where_no_mesh_can_be_valid_it_is_said_what_was_tried() {
-    let mut problem = voxels([3, 3, 3], |_| true);
+    let cubes = voxels([3, 3, 3], |_| true);
     // A corner of the box onto the line between two of its neighbours: the quad is straight there, and no star is perfect.
-    let points = problem.points.as_mut().unwrap();
+    let mut points = cubes.points().unwrap().to_vec();
     let corner = points.iter().position(|p| *p == [0.0; 3]).unwrap();
     points[corner] = [0.5, 0.5, 0.0];
+    let problem = Problem::new("dented", cubes.surface().clone(), points).unwrap();
     let how = PlaceOptions::default();
     let made = fill_placed(&problem, &FillOptions::default(), &how, &Context::default()).unwrap();
     assert!(!made.meshes[0].1.as_ref().unwrap().is_certified());
-    let choice = made.choice.unwrap();
+    let choice = made.choice.unwrap().to_string();
     assert!(choice.contains("the best of"), "{choice}");
     assert!(choice.contains("no further mesh was tried, since none can be valid: quad"), "{choice}");
 }

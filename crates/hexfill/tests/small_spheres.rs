@@ -1,7 +1,7 @@
 //! Every small sphere, filled through the facade and judged.
 
-use hexfill::check::{Ball, Judged, Level, Options, judge};
 use hexfill::mesh::generate::all_spheres;
+use hexfill::unstable::check::{Ball, Judged, Level, Options, judge};
 use hexfill::{Context, FillOptions, Problem, Route, Strategy, fill};
 
 /// Quads up to which all spheres are filled; `HEXFILL_SLOW=1` goes to 16 (521 more spheres).
@@ -13,17 +13,17 @@ fn fill_all(strategy: Strategy) -> Vec<(usize, Route)> {
     let mut found = Vec::new();
     for quads in (6..=largest()).step_by(2) {
         for surface in all_spheres(quads) {
-            let boundary: Vec<[u32; 4]> = surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
+            let boundary: Vec<[u32; 4]> = surface.quads_raw();
             let problem = Problem::from_surface("sphere", surface);
-            let options = FillOptions { strategy, ..FillOptions::default() };
+            let options = FillOptions::default().with_strategy(strategy);
             let result = fill(&problem, &options, &Context::default()).unwrap();
             let made = &result.meshes[0];
-            let hexes = made.mesh.hexes_raw();
-            let judged = Judged::connectivity(made.mesh.n_vertices(), &hexes).with_surface(&boundary);
+            let hexes = made.mesh().hexes_raw();
+            let judged = Judged::connectivity(made.mesh().n_vertices(), &hexes).with_surface(&boundary);
             let report = judge(&judged, &Options::default().up_to(Level::L3), &Context::default());
             assert!(report.passed(Level::L3), "{report}");
             assert!(matches!(report.facts.ball, Some(Ball::Yes | Ball::Homology)), "{report}");
-            found.push((hexes.len(), made.route));
+            found.push((hexes.len(), made.route()));
         }
     }
     found

@@ -13,7 +13,7 @@
 
 use super::bernstein::{UNIT, Vector, dot, norm};
 use crate::parallel::tasks;
-use crate::topology::star::BoundaryQuad;
+use crate::topology::boundary_quad::BoundaryQuad;
 use hexfill_mesh::Context;
 use serde::Serialize;
 

@@ -5,7 +5,7 @@
 //! mesh whose quads pair up in opposite senses: the balance is a check of the arithmetic and of the incidence.
 
 use super::bernstein::{Vector, cross, dot};
-use crate::topology::star::BoundaryQuad;
+use crate::topology::boundary_quad::BoundaryQuad;
 
 /// Neumaier's compensated sum.
 #[derive(Clone, Copy, Debug, Default)]

@@ -1,7 +1,7 @@
 //! Level 3: the boundary against the prescribed surface, and the components of the boundary with their genus.
 
+use super::boundary_quad::BoundaryQuad;
 use super::parity::ParityForest;
-use super::star::BoundaryQuad;
 use super::stars::Stars;
 use crate::report::{BoundaryPart, Findings, Offender, SurfaceSense};
 use crate::rule::Rule;
@@ -23,83 +23,129 @@ pub(crate) fn compare(
     hexes: &[[u32; 8]],
     stars: &Stars,
 ) -> (Findings, Option<SurfaceSense>) {
-    let mut given: Vec<([u32; 4], u32)> =
-        surface.iter().enumerate().map(|(q, &cycle)| (canonical(cycle).0, q as u32)).collect();
-    given.par_sort_unstable();
-    let mut found: Vec<([u32; 4], u32)> =
-        boundary.iter().enumerate().map(|(b, quad)| (canonical(quad.cycle).0, b as u32)).collect();
-    found.par_sort_unstable();
+    let matching = Matching::of(boundary, surface);
+    let sense = matching.sense();
+    (matching.findings(boundary, surface, hexes, stars), sense)
+}
 
-    let mut findings = Findings::default();
-    let (mut missing, mut twisted, mut repeated) = (Vec::new(), Vec::new(), Vec::new());
-    let (mut outward, mut inward) = (0u64, 0u64);
-    let mut at = 0;
-    let mut extra = |b: u32| {
-        let quad = boundary[b as usize];
-        findings.add(Rule::BoundaryQuadExtra, || Offender::at(&[quad.hex], &quad.cycle));
-    };
-    for same in given.chunk_by(|a, b| a.0 == b.0) {
-        let (key, q) = same[0];
-        repeated.extend(same[1..].iter().map(|&(_, r)| (r, q)));
-        while at < found.len() && found[at].0 < key {
-            extra(found[at].1);
-            at += 1;
-        }
-        // In a mesh that fails level 2 one vertex set may be several boundary quads, in different cyclic orders.
-        let first = at;
-        while at < found.len() && found[at].0 == key {
-            at += 1;
-        }
-        let (_, next, opposite) = canonical(surface[q as usize]);
-        if first == at {
-            missing.push(q);
-        }
-        for &(_, b) in &found[first..at] {
-            let (_, found_next, found_opposite) = canonical(boundary[b as usize].cycle);
-            if found_opposite != opposite {
-                twisted.push((q, b));
-            } else if found_next == next {
-                outward += 1;
-            } else {
-                inward += 1;
+/// Cycles as vertex sets in ascending order, each with its place in `cycles`.
+fn sorted(cycles: impl Iterator<Item = [u32; 4]>) -> Vec<([u32; 4], u32)> {
+    let mut keys: Vec<([u32; 4], u32)> = cycles.zip(0u32..).map(|(cycle, i)| (canonical(cycle).0, i)).collect();
+    keys.par_sort_unstable();
+    keys
+}
+
+/// The quads of the boundary against those of the surface, matched by their vertex sets.
+#[derive(Default)]
+struct Matching {
+    /// Quads of the boundary that the surface does not have.
+    extra: Vec<u32>,
+    /// Quads of the surface that the boundary does not have.
+    missing: Vec<u32>,
+    /// Quads of the surface and of the boundary with the same vertices in another cyclic order.
+    twisted: Vec<(u32, u32)>,
+    /// Quads of the surface that it has once before, and the one before.
+    repeated: Vec<(u32, u32)>,
+    /// Quads that match, with the normals of the surface pointing outward and inward.
+    outward: u64,
+    inward: u64,
+}
+
+impl Matching {
+    /// Goes through both lists at once, in the order of vertex sets.
+    fn of(boundary: &[BoundaryQuad], surface: &[[u32; 4]]) -> Self {
+        let given = sorted(surface.iter().copied());
+        let found = sorted(boundary.iter().map(|quad| quad.cycle));
+        let mut matching = Self::default();
+        let mut at = 0;
+        for same in given.chunk_by(|a, b| a.0 == b.0) {
+            let (key, q) = same[0];
+            matching.repeated.extend(same[1..].iter().map(|&(_, r)| (r, q)));
+            while at < found.len() && found[at].0 < key {
+                matching.extra.push(found[at].1);
+                at += 1;
+            }
+            // In a mesh that fails level 2 one vertex set may be several boundary quads, in different cyclic orders.
+            let first = at;
+            while at < found.len() && found[at].0 == key {
+                at += 1;
+            }
+            if first == at {
+                matching.missing.push(q);
+            }
+            for &(_, b) in &found[first..at] {
+                matching.pair(q, surface[q as usize], b, boundary[b as usize].cycle);
             }
         }
+        matching.extra.extend(found[at..].iter().map(|&(_, b)| b));
+        matching
     }
-    found[at..].iter().for_each(|&(_, b)| extra(b));
 
-    missing.sort_unstable();
-    for q in missing {
-        let quad = surface[q as usize];
-        findings.add(Rule::BoundaryQuadMissing, || {
-            let holders = holders(quad, hexes, stars);
-            let list = holders.iter().take(10).map(|&h| HexId(h).to_string()).collect::<Vec<_>>().join(" ");
-            let note = if holders.is_empty() { "not a quad of any hex".into() } else { format!("interior: in {list}") };
-            Offender::quad(q, &quad).note(note)
-        });
+    /// Two cycles of the same four vertices: which vertex is opposite to the smallest tells the cyclic order up to its sense,
+    /// which vertex is next the sense.
+    fn pair(&mut self, q: u32, given: [u32; 4], b: u32, found: [u32; 4]) {
+        let (_, next, opposite) = canonical(given);
+        let (_, found_next, found_opposite) = canonical(found);
+        if found_opposite != opposite {
+            self.twisted.push((q, b));
+        } else if found_next == next {
+            self.outward += 1;
+        } else {
+            self.inward += 1;
+        }
     }
-    twisted.sort_unstable();
-    for (q, b) in twisted {
-        let quad = boundary[b as usize];
-        findings.add(Rule::BoundaryQuadTwisted, || Offender {
-            hexes: vec![quad.hex],
-            ..Offender::quad(q, &surface[q as usize]).note("the surface's order; the hex has another")
-        });
+
+    fn sense(&self) -> Option<SurfaceSense> {
+        match (self.outward, self.inward) {
+            (0, 0) => None,
+            (_, 0) => Some(SurfaceSense::Outward),
+            (0, _) => Some(SurfaceSense::Inward),
+            _ => Some(SurfaceSense::Mixed),
+        }
     }
-    repeated.sort_unstable();
-    for (r, q) in repeated {
-        findings.add(Rule::SurfaceQuadRepeated, || Offender {
-            quads: vec![q, r],
-            vertices: surface[r as usize].to_vec(),
-            ..Offender::default()
-        });
+
+    /// What does not match, in the order of the surface's quads (extra quads: of their vertex sets).
+    fn findings(
+        mut self,
+        boundary: &[BoundaryQuad],
+        surface: &[[u32; 4]],
+        hexes: &[[u32; 8]],
+        stars: &Stars,
+    ) -> Findings {
+        let mut findings = Findings::default();
+        for b in self.extra {
+            let quad = boundary[b as usize];
+            findings.add(Rule::BoundaryQuadExtra, || Offender::at(&[quad.hex], &quad.cycle));
+        }
+        self.missing.sort_unstable();
+        for q in self.missing {
+            let quad = surface[q as usize];
+            findings.add(Rule::BoundaryQuadMissing, || {
+                let holders = holders(quad, hexes, stars);
+                let list = holders.iter().take(10).map(|&h| HexId(h).to_string()).collect::<Vec<_>>().join(" ");
+                let note =
+                    if holders.is_empty() { "not a quad of any hex".into() } else { format!("interior: in {list}") };
+                Offender::quad(q, &quad).note(note)
+            });
+        }
+        self.twisted.sort_unstable();
+        for (q, b) in self.twisted {
+            let quad = boundary[b as usize];
+            findings.add(Rule::BoundaryQuadTwisted, || Offender {
+                hexes: vec![quad.hex],
+                ..Offender::quad(q, &surface[q as usize]).note("the surface's order; the hex has another")
+            });
+        }
+        self.repeated.sort_unstable();
+        for (r, q) in self.repeated {
+            findings.add(Rule::SurfaceQuadRepeated, || Offender {
+                quads: vec![q, r],
+                vertices: surface[r as usize].to_vec(),
+                ..Offender::default()
+            });
+        }
+        findings
     }
-    let sense = match (outward, inward) {
-        (0, 0) => None,
-        (_, 0) => Some(SurfaceSense::Outward),
-        (0, _) => Some(SurfaceSense::Inward),
-        _ => Some(SurfaceSense::Mixed),
-    };
-    (findings, sense)
 }
 
 /// The hexes that have the four vertices as a facet.

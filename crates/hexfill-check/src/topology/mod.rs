@@ -1,6 +1,7 @@
 //! Levels 1 to 3: everything that needs no coordinates.
 
 pub(crate) mod boundary;
+pub(crate) mod boundary_quad;
 pub(crate) mod cells;
 pub(crate) mod homology;
 pub(crate) mod parity;

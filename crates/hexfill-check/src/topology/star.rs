@@ -24,6 +24,7 @@
 use super::parity::ParityForest;
 use crate::report::{Findings, Offender};
 use crate::rule::Rule;
+use crate::topology::boundary_quad::BoundaryQuad;
 use hexfill_mesh::cube;
 
 /// For each corner: its three neighbours (right-handed), then the corners opposite in the quad spanned by neighbours
@@ -46,13 +47,6 @@ pub(crate) fn corner_table() -> [[usize; 7]; 8] {
             cube::corner_at(far[0], far[1], far[2]),
         ]
     })
-}
-
-/// A quad in exactly one hex, as a cycle that is counter-clockwise seen from outside, smallest vertex first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct BoundaryQuad {
-    pub(crate) cycle: [u32; 4],
-    pub(crate) hex: u32,
 }
 
 /// What the stars of a range of vertices add up to.
@@ -127,6 +121,44 @@ struct Link {
     broken: bool,
 }
 
+/// How often a pair has each kind, and entries of that kind: the last edge, the first two faces, the last body diagonal.
+#[derive(Default)]
+struct Kinds {
+    edges: u32,
+    faces: u32,
+    bodies: u32,
+    edge: u64,
+    /// Two are enough to see a quad of the boundary or between two hexes; more take the general way.
+    face: [u64; 2],
+    body: u64,
+}
+
+impl Kinds {
+    #[inline]
+    fn of(entries: &[u64]) -> Self {
+        let mut kinds = Self::default();
+        for &entry in entries {
+            match entry & 7 {
+                0..=2 => {
+                    kinds.edges += 1;
+                    kinds.edge = entry;
+                }
+                6 => {
+                    kinds.bodies += 1;
+                    kinds.body = entry;
+                }
+                _ => {
+                    if kinds.faces < 2 {
+                        kinds.face[kinds.faces as usize] = entry;
+                    }
+                    kinds.faces += 1;
+                }
+            }
+        }
+        kinds
+    }
+}
+
 impl<'a> StarJudge<'a> {
     pub(crate) fn new(hexes: &'a [[u32; 8]], forest: &'a ParityForest, rules: StarRules) -> Self {
         Self {
@@ -192,109 +224,96 @@ impl<'a> StarJudge<'a> {
 
     /// All entries `{v, w}`; whether their kinds conflict.
     fn judge_group(&mut self, v: u32, w: u32, group: std::ops::Range<usize>, codes: &[u32], link: &mut Link) -> bool {
-        // The kinds' entries: at most two of faces are remembered here, more take the general way.
-        let (mut n_edges, mut n_faces, mut n_bodies) = (0u32, 0u32, 0u32);
-        let (mut edge, mut body) = (0, 0);
-        let mut face = [0u64; 2];
-        for i in group.clone() {
-            let entry = self.entries[i];
-            match entry & 7 {
-                0..=2 => {
-                    n_edges += 1;
-                    edge = entry;
-                }
-                6 => {
-                    n_bodies += 1;
-                    body = entry;
-                }
-                _ => {
-                    if n_faces < 2 {
-                        face[n_faces as usize] = entry;
-                    }
-                    n_faces += 1;
-                }
-            }
-        }
-        if n_edges > 0 {
+        let kinds = Kinds::of(&self.entries[group.clone()]);
+        if kinds.edges > 0 {
             link.vertices += 1;
             self.sums.edges += u64::from(v < w);
         }
-        let mut quads = 0;
-        match n_faces {
-            0 => {}
+        let quads = match kinds.faces {
+            0 => 0,
             1 => {
-                self.boundary_quad(v, w, face[0], codes, link);
-                quads = 1;
+                self.boundary_quad(v, w, kinds.face[0], codes, link);
+                1
             }
-            2 if self.others(face[0]) == self.others(face[1]) => {
-                self.interior_quad(v, w, face[0], face[1], codes, link);
-                quads = 1;
+            2 if self.others(kinds.face[0]) == self.others(kinds.face[1]) => {
+                self.interior_quad(v, w, kinds.face[0], kinds.face[1], codes, link);
+                1
             }
-            _ => {
-                let mut faces = std::mem::take(&mut self.faces);
-                faces.clear();
-                let entries = &self.entries[group.clone()];
-                faces.extend(entries.iter().filter(|&e| matches!(e & 7, 3..=5)).map(|&e| (self.others(e), e)));
-                faces.sort_unstable();
-                for same in faces.chunk_by(|a, b| a.0 == b.0) {
-                    quads += 1;
-                    match *same {
-                        [(_, one)] => self.boundary_quad(v, w, one, codes, link),
-                        [(_, one), (_, two)] => self.interior_quad(v, w, one, two, codes, link),
-                        _ => {
-                            link.broken = true;
-                            let x = (same[0].0 >> 32) as u32;
-                            if v < w && v < x {
-                                self.sums.quads += 1;
-                                let y = same[0].0 as u32;
-                                let hexes: Vec<u32> = same.iter().take(10).map(|e| hex_of(e.1, codes)).collect();
-                                self.sums.findings.add(Rule::QuadInThreeHexes, || {
-                                    Offender::at(&hexes, &[v, x, w, y]).note(format!("{} hexes", same.len()))
-                                });
-                                // One part all the same; its orientation is then not judged.
-                                for &(_, e) in &same[1..] {
-                                    self.forest.union(hex_of(same[0].1, codes), hex_of(e, codes), false);
-                                }
-                            }
-                        }
-                    }
-                }
-                self.faces = faces;
-            }
-        }
-        let clean = n_bodies <= 1
-            && quads <= 1
-            && u32::from(n_edges > 0) + u32::from(n_faces > 0) + u32::from(n_bodies > 0) == 1;
+            _ => self.pair_quads(v, w, group.clone(), codes, link),
+        };
+        // The lemma: one kind, of one quad if it is a face diagonal, in one hex if it is a body diagonal.
+        let different = u32::from(kinds.edges > 0) + u32::from(kinds.faces > 0) + u32::from(kinds.bodies > 0);
+        let clean = different == 1 && quads <= 1 && kinds.bodies <= 1;
         if !clean && v < w && self.rules.proper {
-            let hex = |e: u64| hex_of(e, codes);
-            let kinds = [
-                (n_edges > 0 && n_faces > 0, Rule::EdgeIsFaceDiagonal, edge, face[0]),
-                (n_edges > 0 && n_bodies > 0, Rule::EdgeIsBodyDiagonal, edge, body),
-                (quads > 1, Rule::FaceDiagonalOfTwoQuads, 0, 0),
-                (n_faces > 0 && n_bodies > 0, Rule::FaceDiagonalIsBodyDiagonal, face[0], body),
-                (n_bodies > 1, Rule::BodyDiagonalShared, 0, 0),
-            ];
-            for (broken, rule, one, two) in kinds {
-                if broken {
-                    let pair = match rule {
-                        Rule::FaceDiagonalOfTwoQuads => {
-                            let first = self.others(face[0]);
-                            let mut faces =
-                                self.entries[group.clone()].iter().filter(|&e| matches!(e & 7, 3..=5)).copied();
-                            let other = faces.find(|&e| self.others(e) != first).unwrap_or(face[0]);
-                            [hex(face[0]), hex(other)]
-                        }
-                        Rule::BodyDiagonalShared => {
-                            let first = self.entries[group.clone()].iter().find(|&e| e & 7 == 6);
-                            [hex(first.copied().unwrap_or(body)), hex(body)]
-                        }
-                        _ => [hex(one), hex(two)],
-                    };
-                    self.sums.findings.add(rule, || Offender::at(&pair, &[v, w]));
-                }
-            }
+            self.name_kinds(v, w, &kinds, quads, group, codes);
         }
         !clean
+    }
+
+    /// Pairs up the quads with diagonal `{v, w}` where they are more than one boundary quad or one interior quad; how many
+    /// there are.
+    #[cold]
+    fn pair_quads(&mut self, v: u32, w: u32, group: std::ops::Range<usize>, codes: &[u32], link: &mut Link) -> u32 {
+        let mut faces = std::mem::take(&mut self.faces);
+        faces.clear();
+        let entries = self.entries[group].iter().copied();
+        faces.extend(entries.filter(|&e| is_face(e)).map(|e| (self.others(e), e)));
+        faces.sort_unstable();
+        let mut quads = 0;
+        for same in faces.chunk_by(|a, b| a.0 == b.0) {
+            quads += 1;
+            match *same {
+                [(_, one)] => self.boundary_quad(v, w, one, codes, link),
+                [(_, one), (_, two)] => self.interior_quad(v, w, one, two, codes, link),
+                _ => {
+                    link.broken = true;
+                    self.crowded_quad(v, w, same, codes);
+                }
+            }
+        }
+        self.faces = faces;
+        quads
+    }
+
+    /// Names a quad in three or more hexes at its smallest vertex; `same` are its entries, with the two other vertices.
+    fn crowded_quad(&mut self, v: u32, w: u32, same: &[(u64, u64)], codes: &[u32]) {
+        let (x, y) = ((same[0].0 >> 32) as u32, same[0].0 as u32);
+        if v >= w || v >= x {
+            return;
+        }
+        self.sums.quads += 1;
+        let hexes: Vec<u32> = same.iter().take(10).map(|e| hex_of(e.1, codes)).collect();
+        self.sums
+            .findings
+            .add(Rule::QuadInThreeHexes, || Offender::at(&hexes, &[v, x, w, y]).note(format!("{} hexes", same.len())));
+        // One part all the same; its orientation is then not judged.
+        for &(_, e) in &same[1..] {
+            self.forest.union(hex_of(same[0].1, codes), hex_of(e, codes), false);
+        }
+    }
+
+    /// Names what is wrong with the kinds of the pair `{v, w}`, each time with two hexes that disagree.
+    #[cold]
+    fn name_kinds(&mut self, v: u32, w: u32, kinds: &Kinds, quads: u32, group: std::ops::Range<usize>, codes: &[u32]) {
+        let &Kinds { edge, face: [face, _], body, .. } = kinds;
+        let entries = &self.entries[group];
+        let other_face = || {
+            let first = self.others(face);
+            entries.iter().copied().find(|&e| is_face(e) && self.others(e) != first).unwrap_or(face)
+        };
+        let first_body = || entries.iter().copied().find(|&e| e & 7 == 6).unwrap_or(body);
+        let (edges, faces, bodies) = (kinds.edges > 0, kinds.faces > 0, kinds.bodies > 0);
+        let pairs = [
+            (edges && faces).then_some((Rule::EdgeIsFaceDiagonal, edge, face)),
+            (edges && bodies).then_some((Rule::EdgeIsBodyDiagonal, edge, body)),
+            (quads > 1).then(|| (Rule::FaceDiagonalOfTwoQuads, face, other_face())),
+            (faces && bodies).then_some((Rule::FaceDiagonalIsBodyDiagonal, face, body)),
+            (kinds.bodies > 1).then(|| (Rule::BodyDiagonalShared, first_body(), body)),
+        ];
+        for (rule, one, two) in pairs.into_iter().flatten() {
+            let hexes = [hex_of(one, codes), hex_of(two, codes)];
+            self.sums.findings.add(rule, || Offender::at(&hexes, &[v, w]));
+        }
     }
 
     /// The two other vertices of a face entry's quad, as `smaller << 32 | larger`.
@@ -425,6 +444,11 @@ impl<'a> StarJudge<'a> {
 /// Place in the star of an entry's hex.
 fn place(entry: u64) -> usize {
     ((entry & 0xffff_ffff) >> 3) as usize
+}
+
+/// Whether an entry is the diagonal of a face.
+fn is_face(entry: u64) -> bool {
+    matches!(entry & 7, 3..=5)
 }
 
 fn corner(entry: u64) -> u32 {

@@ -6,28 +6,28 @@ use hexfill_mesh::Context;
 
 /// A mesh with its prescribed boundary.
 #[derive(Clone, Debug)]
-pub struct Sample {
+pub(crate) struct Sample {
     pub n: usize,
     pub hexes: Vec<[u32; 8]>,
     pub surface: Vec<[u32; 4]>,
 }
 
 impl Sample {
-    pub fn judged(&self) -> Judged<'_> {
+    pub(crate) fn judged(&self) -> Judged<'_> {
         Judged::connectivity(self.n, &self.hexes).with_surface(&self.surface)
     }
 
-    pub fn report(&self) -> Report {
+    pub(crate) fn report(&self) -> Report {
         judge(&self.judged(), &Options::default(), &Context::default())
     }
 }
 
-pub fn report(n: usize, hexes: &[[u32; 8]]) -> Report {
+pub(crate) fn report(n: usize, hexes: &[[u32; 8]]) -> Report {
     judge(&Judged::connectivity(n, hexes), &Options::default(), &Context::default())
 }
 
 /// A block of `size` cubes, ids in lexicographic order, boundary quads outward.
-pub fn grid(size: [usize; 3]) -> Sample {
+pub(crate) fn grid(size: [usize; 3]) -> Sample {
     let [a, b, c] = size;
     let id = |x: usize, y: usize, z: usize| (x + (a + 1) * (y + (b + 1) * z)) as u32;
     let mut hexes = Vec::new();
@@ -67,7 +67,7 @@ pub fn grid(size: [usize; 3]) -> Sample {
 }
 
 /// Positions of the vertices of [`grid`].
-pub fn grid_points(size: [usize; 3]) -> Vec<[f64; 3]> {
+pub(crate) fn grid_points(size: [usize; 3]) -> Vec<[f64; 3]> {
     let [a, b, c] = size;
     let mut points = Vec::new();
     for z in 0..=c {
@@ -81,7 +81,7 @@ pub fn grid_points(size: [usize; 3]) -> Vec<[f64; 3]> {
 }
 
 /// A refinement template from `tests/data`.
-pub fn template(name: &str) -> Sample {
+pub(crate) fn template(name: &str) -> Sample {
     let path = format!("{}/tests/data/{name}.json", env!("CARGO_MANIFEST_DIR"));
     let data: serde_json::Value = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
     let hexes: Vec<[u32; 8]> = serde_json::from_value(data["hexes"].clone()).unwrap();
@@ -91,7 +91,7 @@ pub fn template(name: &str) -> Sample {
 }
 
 /// The eight cubes of the tesseract's boundary; the vertices are its 16 corners as bit patterns.
-pub fn tesseract() -> Vec<[u32; 8]> {
+pub(crate) fn tesseract() -> Vec<[u32; 8]> {
     let mut hexes = Vec::new();
     for axis in 0..4u32 {
         for side in 0..2u32 {
@@ -109,7 +109,7 @@ pub fn tesseract() -> Vec<[u32; 8]> {
 }
 
 /// The tesseract without its first cube: seven cubes in a ball with six boundary quads.
-pub fn tesseract_minus_cube() -> Sample {
+pub(crate) fn tesseract_minus_cube() -> Sample {
     let all = tesseract();
     let h = all[0];
     // The quads of the hole, outward from the other seven: inward as facets of the removed cube.
@@ -119,7 +119,7 @@ pub fn tesseract_minus_cube() -> Sample {
 
 /// A closed ring of `n` cubes; with `twist` the last quad is glued to the first in another rotation, with `mirror` reflected
 /// (a solid Klein bottle).
-pub fn ring(n: usize, twist: usize, mirror: bool) -> (usize, Vec<[u32; 8]>) {
+pub(crate) fn ring(n: usize, twist: usize, mirror: bool) -> (usize, Vec<[u32; 8]>) {
     let hexes = (0..n)
         .map(|i| {
             let bottom = [0, 1, 2, 3].map(|k| 4 * i as u32 + k);
@@ -137,7 +137,7 @@ pub fn ring(n: usize, twist: usize, mirror: bool) -> (usize, Vec<[u32; 8]>) {
 }
 
 /// The cubical cone over a triangulated surface: vertex 0 has exactly this surface as link, one hex a triangle.
-pub fn cone(triangles: &[[u32; 3]]) -> (usize, Vec<[u32; 8]>) {
+pub(crate) fn cone(triangles: &[[u32; 3]]) -> (usize, Vec<[u32; 8]>) {
     let corners = triangles.iter().flatten().max().unwrap() + 1;
     let mut edges: Vec<[u32; 2]> = Vec::new();
     for t in triangles {
@@ -162,25 +162,25 @@ pub fn cone(triangles: &[[u32; 3]]) -> (usize, Vec<[u32; 8]>) {
 }
 
 /// Möbius' torus with seven vertices.
-pub fn torus() -> Vec<[u32; 3]> {
+pub(crate) fn torus() -> Vec<[u32; 3]> {
     (0..7).flat_map(|i| [[i, (i + 1) % 7, (i + 3) % 7], [i, (i + 3) % 7, (i + 2) % 7]]).collect()
 }
 
 /// An annulus of six triangles.
-pub fn annulus() -> Vec<[u32; 3]> {
+pub(crate) fn annulus() -> Vec<[u32; 3]> {
     (0..3).flat_map(|i| [[i, (i + 1) % 3, 3 + i], [(i + 1) % 3, 3 + (i + 1) % 3, 3 + i]]).collect()
 }
 
 /// A Möbius band of five triangles.
-pub fn moebius() -> Vec<[u32; 3]> {
+pub(crate) fn moebius() -> Vec<[u32; 3]> {
     (0..5).map(|i| [i, (i + 1) % 5, (i + 2) % 5]).collect()
 }
 
 /// A small deterministic generator (splitmix64).
-pub struct Random(pub u64);
+pub(crate) struct Random(pub u64);
 
 impl Random {
-    pub fn next(&mut self) -> u64 {
+    pub(crate) fn next(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -188,16 +188,16 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    pub fn below(&mut self, n: usize) -> usize {
+    pub(crate) fn below(&mut self, n: usize) -> usize {
         (self.next() % n as u64) as usize
     }
 
     /// Uniform in 0..1.
-    pub fn unit(&mut self) -> f64 {
+    pub(crate) fn unit(&mut self) -> f64 {
         (self.next() >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    pub fn shuffle<T>(&mut self, items: &mut [T]) {
+    pub(crate) fn shuffle<T>(&mut self, items: &mut [T]) {
         for i in (1..items.len()).rev() {
             items.swap(i, self.below(i + 1));
         }

@@ -4,7 +4,9 @@ use crate::console::Console;
 use crate::exit::Exit;
 use crate::files;
 use anyhow::bail;
-use hexfill::search::{Atlas, Cavity, CompleteOptions, GrowOptions, GrowthLog, MAX_CAP, MAX_QUADS, Spread, complete};
+use hexfill::unstable::search::{
+    Atlas, Cavity, CompleteOptions, GrowOptions, GrowthLog, MAX_CAP, MAX_QUADS, Spread, complete,
+};
 use hexfill::{Context, StopReason};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -12,7 +14,7 @@ use std::time::Instant;
 
 /// Flags of `atlas`.
 #[derive(clap::Args)]
-pub struct AtlasArgs {
+pub(crate) struct AtlasArgs {
     #[command(subcommand)]
     command: AtlasCommand,
 }
@@ -107,11 +109,11 @@ struct BuildReport {
     /// Classes left out in this run to stay within the memory limit.
     thinned: u64,
     exhausted: bool,
-    stopped: Option<&'static str>,
+    stopped: Option<StopReason>,
 }
 
 /// Runs the subcommand.
-pub fn run(args: &AtlasArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
+pub(crate) fn run(args: &AtlasArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
     match &args.command {
         AtlasCommand::Build { output, cap, levels, width, beam } => {
             let width = if *width == 0 { u32::MAX } else { *width };
@@ -172,7 +174,7 @@ struct CompletionReport {
     found: usize,
     large: usize,
     missing: usize,
-    stopped: Option<&'static str>,
+    stopped: Option<StopReason>,
 }
 
 fn complete_atlas(
@@ -199,7 +201,7 @@ fn complete_atlas(
         found: done.found,
         large: done.large,
         missing: done.missing,
-        stopped: (done.stop != StopReason::Finished).then(|| stop_word(done.stop)),
+        stopped: (done.stop != StopReason::Finished).then_some(done.stop),
     };
     if console.json {
         console.print_json(&report)?;
@@ -268,7 +270,7 @@ fn build(
         memory_bytes: growth.memory(),
         thinned,
         exhausted: growth.is_exhausted(),
-        stopped: stopped.map(stop_word),
+        stopped,
     };
     if console.json {
         console.print_json(&report)?;
@@ -296,16 +298,6 @@ fn build(
         None => {}
     }
     Ok(Exit::of_stop(stopped.unwrap_or(StopReason::Finished), Exit::Done))
-}
-
-/// A stop reason as one word for JSON.
-pub fn stop_word(stop: StopReason) -> &'static str {
-    match stop {
-        StopReason::Finished => "finished",
-        StopReason::Cancelled => "cancelled",
-        StopReason::TimeLimit => "time-limit",
-        StopReason::MemoryLimit => "memory-limit",
-    }
 }
 
 #[derive(Serialize)]
@@ -384,7 +376,7 @@ struct LookupRow {
 
 fn lookup(surface: &str, atlas: &Atlas, console: &Console) -> anyhow::Result<Exit> {
     let problem = files::load_problem(surface, &files::InputArgs::default())?;
-    let Some((cavity, _)) = Cavity::from_surface(&problem.surface) else {
+    let Some((cavity, _)) = Cavity::from_surface(problem.surface()) else {
         bail!("{surface} is not one sphere of at most {MAX_QUADS} quads; the atlas knows no other surfaces");
     };
     let rows: Vec<LookupRow> = atlas

@@ -10,7 +10,7 @@ use serde::Serialize;
 
 /// Flags of `catalog`.
 #[derive(clap::Args)]
-pub struct CatalogArgs {
+pub(crate) struct CatalogArgs {
     #[command(subcommand)]
     command: Option<CatalogCommand>,
 }
@@ -51,18 +51,18 @@ fn describe(entry: &Entry) -> anyhow::Result<Shown> {
     Ok(Shown {
         name,
         title: entry.title,
-        quads: problem.surface.n_quads(),
-        vertices: problem.surface.n_vertices(),
-        coordinates: problem.points.is_some(),
+        quads: problem.surface().n_quads(),
+        vertices: problem.surface().n_vertices(),
+        coordinates: problem.points().is_some(),
         source: entry.source,
         best: entry.best,
         mesh_hexes: entry.best_mesh().map(|m| m.hexes.len()),
-        signature: hexfill::mesh::surface_signature(&problem.surface),
+        signature: hexfill::mesh::surface_signature(problem.surface()),
     })
 }
 
 /// Lists or shows.
-pub fn run(args: &CatalogArgs, console: &Console) -> anyhow::Result<Exit> {
+pub(crate) fn run(args: &CatalogArgs, console: &Console) -> anyhow::Result<Exit> {
     match args.command.as_ref().unwrap_or(&CatalogCommand::List) {
         CatalogCommand::List => {
             let all = catalog::entries().iter().map(describe).collect::<anyhow::Result<Vec<_>>>()?;

@@ -5,17 +5,17 @@ use crate::exit::Exit;
 use crate::files;
 use anyhow::{Context as _, bail};
 use hexfill::Context;
-use hexfill::check::{
-    Judged, Level, Options, Rules, cell_quality, certificate_of, judge, verify_certificate, write_cell_csv,
-};
 use hexfill::io::MeshData;
 use hexfill::mesh::cube::FACETS;
+use hexfill::unstable::check::{
+    Judged, Level, Options, Rules, cell_quality, certificate_of, judge, verify_certificate, write_cell_csv,
+};
 use std::collections::BTreeSet;
 use std::io::Write;
 
 /// Flags of `check`.
 #[derive(clap::Args)]
-pub struct CheckArgs {
+pub(crate) struct CheckArgs {
     /// The mesh to judge.
     mesh: String,
     /// The surface it must fill; without it the mesh is judged against its own boundary.
@@ -113,7 +113,7 @@ fn faces_not_on_boundary(data: &MeshData) -> usize {
 }
 
 /// Judges and reports; exit code 1 if a rule is broken.
-pub fn run(args: &CheckArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
+pub(crate) fn run(args: &CheckArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
     let data = files::read_data(&args.mesh, &args.reading)?;
     for note in &data.notes {
         console.note(note);
@@ -121,8 +121,6 @@ pub fn run(args: &CheckArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Re
     if data.hexes.is_empty() {
         bail!("{} has no hexes; give a hex mesh (a surface is described by `hexfill info`)", args.mesh);
     }
-    let highest = data.hexes.iter().flatten().max().map_or(0, |&v| v as usize + 1);
-    let n_vertices = if data.has_coordinates { data.points.len() } else { highest };
     if args.surface.is_none() && !data.quads.is_empty() {
         let differ = faces_not_on_boundary(&data);
         if differ > 0 {
@@ -136,17 +134,18 @@ pub fn run(args: &CheckArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Re
         .as_ref()
         .map(|s| files::load_problem(s, &files::InputArgs { from: None, ..args.reading.clone() }))
         .transpose()?;
-    let quads: Option<Vec<[u32; 4]>> =
-        problem.as_ref().map(|p| p.surface.quads().iter().map(|q| q.map(|v| v.0)).collect());
-    let judged = Judged {
-        surface: quads.as_deref(),
-        points: data.has_coordinates.then_some(data.points.as_slice()),
-        surface_points: problem.as_ref().and_then(|p| p.points.as_deref()),
-        ..Judged::connectivity(n_vertices, &data.hexes)
-    };
+    hexfill::with_judged(&data, problem.as_ref(), |judged| judge_and_report(args, judged, console, ctx))
+}
+
+fn judge_and_report(
+    args: &CheckArgs,
+    judged: &Judged<'_>,
+    console: &Console,
+    ctx: &Context<'_>,
+) -> anyhow::Result<Exit> {
     if let Some(file) = &args.verify_certificate {
         let text = std::fs::read_to_string(file).with_context(|| file.clone())?;
-        return match verify_certificate(&text, &judged, ctx) {
+        return match verify_certificate(&text, judged, ctx) {
             Ok(certificate) => {
                 let [lower, upper] = certificate.scaled_jacobian;
                 console.print(format!(
@@ -161,13 +160,13 @@ pub fn run(args: &CheckArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Re
             }
         };
     }
-    let report = judge(&judged, &args.options(), ctx);
+    let report = judge(judged, &args.options(), ctx);
     if let Some(path) = &args.csv {
-        let cells = cell_quality(&judged);
+        let cells = cell_quality(judged);
         files::write_file(path, |out| write_cell_csv(&cells, &mut std::io::BufWriter::new(out)))?;
     }
     if let Some(path) = &args.certificate {
-        match certificate_of(&judged, &report) {
+        match certificate_of(judged, &report) {
             Ok(certificate) => files::write_file(path, |out| out.write_all(certificate.to_json().as_bytes()))?,
             Err(error) => console.error(&anyhow::Error::new(error).context("no certificate written")),
         }

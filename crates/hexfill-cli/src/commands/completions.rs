@@ -6,13 +6,13 @@ use std::io::Write;
 
 /// Flags of `completions`.
 #[derive(clap::Args)]
-pub struct CompletionsArgs {
+pub(crate) struct CompletionsArgs {
     /// The shell to complete for.
     shell: clap_complete::Shell,
 }
 
 /// Prints the completion script.
-pub fn run(args: &CompletionsArgs) -> anyhow::Result<Exit> {
+pub(crate) fn run(args: &CompletionsArgs) -> anyhow::Result<Exit> {
     // Into memory first: the generator panics if its writer fails.
     let mut script = Vec::new();
     clap_complete::generate(args.shell, &mut crate::Cli::command(), "hexfill", &mut script);

@@ -7,7 +7,7 @@ use hexfill::io::Format;
 
 /// Flags of `convert`.
 #[derive(clap::Args)]
-pub struct ConvertArgs {
+pub(crate) struct ConvertArgs {
     /// The file to read, `-` for stdin, or a catalogue name or signature.
     input: String,
     /// The file to write; format by extension; `-` for stdout.
@@ -21,7 +21,7 @@ pub struct ConvertArgs {
 }
 
 /// Reads and writes; topology is not judged.
-pub fn run(args: &ConvertArgs, console: &Console) -> anyhow::Result<Exit> {
+pub(crate) fn run(args: &ConvertArgs, console: &Console) -> anyhow::Result<Exit> {
     files::check_output(&args.output, args.to)?;
     let data = if hexfill::is_named(&args.input) {
         files::load_problem(&args.input, &args.reading)?.data()

@@ -10,7 +10,7 @@ use serde::Serialize;
 
 /// Flags of `doctor`.
 #[derive(clap::Args)]
-pub struct DoctorArgs {
+pub(crate) struct DoctorArgs {
     /// The surface: a file, `-`, a catalogue name or a signature.
     surface: String,
     #[command(flatten)]
@@ -49,7 +49,7 @@ struct Mended {
 }
 
 /// Examines, mends if asked; exit code 1 if the surface (the mended one, with --fix) cannot be filled.
-pub fn run(args: &DoctorArgs, console: &Console) -> anyhow::Result<Exit> {
+pub(crate) fn run(args: &DoctorArgs, console: &Console) -> anyhow::Result<Exit> {
     if let Some(output) = &args.output {
         files::check_output(output, args.to)?;
         files::check_distinct(&[&args.surface, output])?;
@@ -130,11 +130,7 @@ fn print(name: &str, diagnosis: &Diagnosis, console: &Console) -> anyhow::Result
         limits.lines().into_iter().try_for_each(|line| console.print(line))?;
     }
     if let Some(existence) = &diagnosis.existence {
-        console.print(match existence.hex_mesh {
-            "exists" => format!("hex mesh: exists ({})", existence.because),
-            "none" => format!("hex mesh: none exists: {}", existence.because),
-            _ => format!("hex mesh: not known: {}", existence.because),
-        })?;
+        console.print(existence.to_string())?;
     }
     console.print(if diagnosis.can_be_filled {
         "`hexfill fill` takes it as it is"

@@ -4,16 +4,14 @@ use crate::console::Console;
 use crate::exit::Exit;
 use crate::files;
 use anyhow::bail;
-use hexfill::check::{Judged, cell_quality};
-use hexfill::embed::{Objective, Options, embed};
 use hexfill::io::Format;
 use hexfill::mesh::HexMesh;
-use hexfill::{Context, GeometryReport, Placed};
+use hexfill::{Context, EmbedOptions, GeometryReport, Objective, StopReason};
 use serde::Serialize;
 
 /// Flags of `embed`.
 #[derive(clap::Args)]
-pub struct EmbedArgs {
+pub(crate) struct EmbedArgs {
     /// The mesh; the positions of its boundary vertices are kept bit for bit.
     mesh: String,
     /// The mesh to write; format by extension; `-` for stdout.
@@ -59,7 +57,7 @@ struct Output {
 }
 
 /// Embeds, judges, writes; exit code 1 if some hex is not certified.
-pub fn run(args: &EmbedArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
+pub(crate) fn run(args: &EmbedArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
     files::check_output(&args.output, args.to)?;
     let mut data = files::read_data(&args.mesh, &args.from.into())?;
     for note in std::mem::take(&mut data.notes) {
@@ -73,7 +71,7 @@ pub fn run(args: &EmbedArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Re
         bail!("{} has no coordinates; `hexfill fill` places the boundary of a surface without any", args.mesh);
     }
     let mesh = HexMesh::try_new(data.points.len(), &data.hexes)?;
-    let mut options = Options::new(match args.objective {
+    let mut options = EmbedOptions::new(match args.objective {
         ObjectiveArg::Sj => Objective::ScaledJacobian,
         ObjectiveArg::Balanced => Objective::Balanced,
         ObjectiveArg::Untangle => Objective::UntangleOnly,
@@ -81,18 +79,15 @@ pub fn run(args: &EmbedArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Re
     options.starts = args.starts;
     options.symmetric = args.symmetric;
     let start = (!args.fresh).then_some(data.points.as_slice());
-    let made = embed(&mesh, &data.points, start, &options, ctx)?;
-    let judged = Judged::connectivity(mesh.n_vertices(), &data.hexes).with_points(&made.points);
-    let cells = cell_quality(&judged).into_iter().flatten().collect();
-    let stop = made.report.stop;
-    let placed = Placed { points: made.points, cells, embedding: Some(made.report), refused: None, ways: 1 };
+    let placed = hexfill::embed_mesh(&mesh, &data.points, start, &options, ctx)?;
+    let stop = placed.embedding().map_or(StopReason::Finished, |report| report.stop);
     let valid = placed.is_certified();
     let report = placed.report();
     console.say(report.to_string());
     let written = valid || !args.require_valid;
     if written {
         placed.flag(&mut data);
-        data.points.clone_from(&placed.points);
+        data.points = placed.points().to_vec();
         files::write_data(&args.output, args.to, &data, console)?;
         console.say(format!("written: {}", args.output));
     } else {

@@ -5,7 +5,7 @@ use crate::console::Console;
 use crate::exit::Exit;
 use anyhow::{Context as _, bail};
 use hexfill::Context;
-use hexfill::enumerate::{
+use hexfill::unstable::enumerate::{
     Boundary, Chunk, Code, Complex, EnumerateError, Filter, Found, Header, LevelOptions, ListFormat, Params, Plan,
     Rule, Selection, Tally, Target, Wanted, all_levels, canonical, chunks_of_part, default_chunks, histograms, line,
     merge, mirror_lines, parse_range, read_ledgers, run_checkpointed, run_in_order, shape, strict_violations, table,
@@ -13,13 +13,13 @@ use hexfill::enumerate::{
 };
 use serde_json::json;
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Flags of `enumerate`.
 #[derive(clap::Args)]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
-pub struct EnumerateArgs {
+pub(crate) struct EnumerateArgs {
     #[command(subcommand)]
     action: Option<Action>,
     /// Number of cubes (1 to 12).
@@ -127,7 +127,7 @@ enum Engine {
     Augment,
 }
 
-fn parse_part(text: &str) -> Result<Chunk, String> {
+pub(super) fn parse_part(text: &str) -> Result<Chunk, String> {
     let part = text.split_once('/').and_then(|(r, m)| Some(Chunk { index: r.parse().ok()?, of: m.parse().ok()? }));
     match part {
         Some(part) if part.index < part.of => Ok(part),
@@ -136,7 +136,7 @@ fn parse_part(text: &str) -> Result<Chunk, String> {
 }
 
 /// Enumerates, or does what the subcommand says.
-pub fn run(args: &EnumerateArgs, threads: usize, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
+pub(crate) fn run(args: &EnumerateArgs, threads: usize, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
     let outcome = match &args.action {
         None => enumerate(args, threads, console, ctx),
         Some(Action::Merge { folder, output, format }) => merge_folder(folder, output.as_ref(), *format, console),
@@ -208,6 +208,51 @@ impl Output {
 
 fn enumerate(args: &EnumerateArgs, threads: usize, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
     let started = Instant::now();
+    let params = params_of(args)?;
+    if let Some(file) = &args.gallery {
+        gallery::check(file)?;
+    }
+    if args.mirror == Mirror::Distinct && args.nonorientable {
+        bail!("--mirror distinct needs orientable meshes: leave out --nonorientable");
+    }
+    let selection = selection_of(args)?;
+    let targets = targets_of(&args.find)?;
+    let list = !args.count_only;
+    if list && console.json && args.output.is_none() && args.checkpoint.is_none() {
+        bail!("--json prints the counts on stdout: add -u, or -o FILE for the objects");
+    }
+    let engine = engine_of(args, &params)?;
+    let listed = list && args.checkpoint.is_none();
+    let mut output = Output::open(args.output.as_ref(), listed, args.format, params.rule, args.mirror)?;
+    output.gallery = args.gallery.is_some().then(Gallery::default);
+    let wanted = Wanted { selection: Some(&selection), list, targets: &targets };
+    let job =
+        Job { params: &params, options: LevelOptions { threads, narrow_hashes: args.narrow_hashes }, wanted, ctx };
+    let mut counts = Counts::default();
+    if engine == Engine::Level {
+        job.by_levels(&mut output, &mut counts)?;
+    } else {
+        let part = args.part.unwrap_or(Chunk { index: 0, of: 1 });
+        let chunks = args.chunks.unwrap_or_else(|| default_chunks(part.of));
+        match &args.checkpoint {
+            Some(folder) => job.with_ledger(folder, part, chunks, &selection, console, &mut counts)?,
+            None => job.by_chunks(part, chunks, &mut output, &mut counts)?,
+        }
+    }
+    output.finish()?;
+    if let (Some(file), Some(gallery)) = (&args.gallery, &output.gallery) {
+        gallery.write(file, &params, console)?;
+    }
+    report(&params, &counts.levels, &targets, &counts.found, args.count_only, console)?;
+    let objects = counts
+        .levels
+        .last()
+        .map_or(0, |(_, t)| if args.mirror == Mirror::Distinct { t.classes + t.chiral } else { t.classes });
+    console.say(format!(">Z {objects} meshes generated in {:.2} sec", started.elapsed().as_secs_f64()));
+    Ok(Exit::Done)
+}
+
+fn params_of(args: &EnumerateArgs) -> anyhow::Result<Params> {
     let params = Params {
         cubes: args.cubes.context("give the number of cubes")?,
         rule: args.rule,
@@ -215,24 +260,20 @@ fn enumerate(args: &EnumerateArgs, threads: usize, console: &Console, ctx: &Cont
         filter: args.max_chords.map(|max_chords| Filter { max_chords, from: args.filter_from }),
     };
     params.check()?;
-    if let Some(file) = &args.gallery {
-        gallery::check(file)?;
-    }
-    if args.mirror == Mirror::Distinct && args.nonorientable {
-        bail!("--mirror distinct needs orientable meshes: leave out --nonorientable");
-    }
-    let selection = Selection {
+    Ok(params)
+}
+
+fn selection_of(args: &EnumerateArgs) -> anyhow::Result<Selection> {
+    Ok(Selection {
         boundary_quads: args.boundary_quads.as_deref().map(parse_range).transpose()?,
         balls: args.balls,
         max_chords: args.max_chords,
         key: args.only_key.as_deref().map(str::parse).transpose().map_err(EnumerateError::from)?,
-    };
-    let targets = targets_of(&args.find)?;
-    let list = !args.count_only;
-    if list && console.json && args.output.is_none() && args.checkpoint.is_none() {
-        bail!("--json prints the counts on stdout: add -u, or -o FILE for the objects");
-    }
-    let wanted = Wanted { selection: Some(&selection), list, targets: &targets };
+    })
+}
+
+/// The engine that does what is asked; [`Engine::Auto`] is settled.
+fn engine_of(args: &EnumerateArgs, params: &Params) -> anyhow::Result<Engine> {
     let in_chunks = args.part.is_some() || args.checkpoint.is_some() || args.chunks.is_some();
     let engine = match args.engine {
         Engine::Auto if in_chunks => Engine::Augment,
@@ -245,63 +286,79 @@ fn enumerate(args: &EnumerateArgs, threads: usize, console: &Console, ctx: &Cont
             "the level engine does not work in chunks: leave out RES/MOD, --checkpoint and --chunks, or use --engine augment"
         );
     }
-    let options = LevelOptions { threads, narrow_hashes: args.narrow_hashes };
-    let mut output =
-        Output::open(args.output.as_ref(), list && args.checkpoint.is_none(), args.format, params.rule, args.mirror)?;
-    output.gallery = args.gallery.is_some().then(Gallery::default);
-    let mut levels: Vec<(usize, Tally)> = Vec::new();
-    let mut found = Found::default();
-    if engine == Engine::Level {
-        for level in all_levels(&params, &options, wanted, false, ctx)? {
+    Ok(engine)
+}
+
+/// What is enumerated.
+struct Job<'a> {
+    params: &'a Params,
+    options: LevelOptions,
+    wanted: Wanted<'a>,
+    ctx: &'a Context<'a>,
+}
+
+/// What has been counted, by the number of cubes, and the targets found.
+#[derive(Default)]
+struct Counts {
+    levels: Vec<(usize, Tally)>,
+    found: Found,
+}
+
+impl Job<'_> {
+    fn by_levels(&self, output: &mut Output, counts: &mut Counts) -> anyhow::Result<()> {
+        for level in all_levels(self.params, &self.options, self.wanted, false, self.ctx)? {
             for code in &level.found.selected {
                 output.write(code)?;
             }
-            found.targets.extend(level.found.targets);
-            levels.push((level.cubes, level.tally));
+            counts.found.targets.extend(level.found.targets);
+            counts.levels.push((level.cubes, level.tally));
         }
-    } else {
-        let part = args.part.unwrap_or(Chunk { index: 0, of: 1 });
-        let chunks = args.chunks.unwrap_or_else(|| default_chunks(part.of));
-        let plan = Plan::prepare(&params, &options, ctx)?;
-        if let Some(folder) = &args.checkpoint {
-            let names = targets.iter().map(|t| t.name.clone()).collect();
-            let header = Header::new(&params, selection.text(), list, names, chunks);
-            let done = run_checkpointed(&plan, folder, part, &header, threads, wanted, ctx)?;
-            if done.dropped_bytes > 0 {
-                console.note(format!("a torn last line of {} bytes was dropped from the ledger", done.dropped_bytes));
+        Ok(())
+    }
+
+    fn by_chunks(&self, part: Chunk, chunks: usize, output: &mut Output, counts: &mut Counts) -> anyhow::Result<()> {
+        let plan = Plan::prepare(self.params, &self.options, self.ctx)?;
+        let mut tally = Tally::default();
+        let all = chunks_of_part(part, chunks)?;
+        run_in_order(&plan, &all, self.options.threads, self.wanted, self.ctx, &mut |result| {
+            tally.merge(&result.tally);
+            for code in &result.found.selected {
+                output.write(code)?;
             }
-            console.say(format!(
-                "chunks: {} of this part, {} found done; processor time {:.1} s; see `hexfill enumerate merge {}`",
-                done.chunks,
-                done.found_done,
-                done.cpu_nanoseconds as f64 / 1e9,
-                folder.display()
-            ));
-            levels.push((params.cubes, done.tally));
-        } else {
-            let mut tally = Tally::default();
-            let all = chunks_of_part(part, chunks)?;
-            run_in_order(&plan, &all, threads, wanted, ctx, &mut |result| {
-                tally.merge(&result.tally);
-                for code in &result.found.selected {
-                    output.write(code)?;
-                }
-                found.targets.extend(result.found.targets);
-                Ok(())
-            })?;
-            levels.push((params.cubes, tally));
+            counts.found.targets.extend(result.found.targets);
+            Ok(())
+        })?;
+        counts.levels.push((self.params.cubes, tally));
+        Ok(())
+    }
+
+    /// In chunks that a ledger in `folder` keeps: what it holds is not done again, and the objects stay there.
+    fn with_ledger(
+        &self,
+        folder: &Path,
+        part: Chunk,
+        chunks: usize,
+        selection: &Selection,
+        console: &Console,
+        counts: &mut Counts,
+    ) -> anyhow::Result<()> {
+        let plan = Plan::prepare(self.params, &self.options, self.ctx)?;
+        let names = self.wanted.targets.iter().map(|t| t.name.clone()).collect();
+        let header = Header::new(self.params, selection.text(), self.wanted.list, names, chunks);
+        let done = run_checkpointed(&plan, folder, part, &header, self.options.threads, self.wanted, self.ctx)?;
+        if done.dropped_bytes > 0 {
+            console.note(format!("a torn last line of {} bytes was dropped from the ledger", done.dropped_bytes));
         }
+        console.say(format!(
+            "chunks: {} of this part, {} found done; processor time {:.1} s; see `hexfill enumerate merge {}`",
+            done.chunks,
+            done.found_done,
+            done.cpu_nanoseconds as f64 / 1e9,
+            folder.display()
+        ));
+        counts.levels.push((self.params.cubes, done.tally));
+        Ok(())
     }
-    output.finish()?;
-    if let (Some(file), Some(gallery)) = (&args.gallery, &output.gallery) {
-        gallery.write(file, &params, console)?;
-    }
-    report(&params, &levels, &targets, &found, args.count_only, console)?;
-    let objects = levels
-        .last()
-        .map_or(0, |(_, t)| if args.mirror == Mirror::Distinct { t.classes + t.chiral } else { t.classes });
-    console.say(format!(">Z {objects} meshes generated in {:.2} sec", started.elapsed().as_secs_f64()));
-    Ok(Exit::Done)
 }
 
 fn targets_of(names: &[String]) -> anyhow::Result<Vec<Target>> {
@@ -347,7 +404,7 @@ fn report(
 }
 
 fn merge_folder(
-    folder: &std::path::Path,
+    folder: &Path,
     output: Option<&PathBuf>,
     format: ListFormat,
     console: &Console,
@@ -362,7 +419,7 @@ fn merge_folder(
     Ok(Exit::Done)
 }
 
-fn report_merged(merged: &hexfill::enumerate::Merged, console: &Console) -> anyhow::Result<()> {
+fn report_merged(merged: &hexfill::unstable::enumerate::Merged, console: &Console) -> anyhow::Result<()> {
     let tally = merged.tally();
     let hits: Vec<_> = merged.records.values().flat_map(|r| r.targets.clone()).collect();
     if console.json {
@@ -398,13 +455,7 @@ fn report_merged(merged: &hexfill::enumerate::Merged, console: &Console) -> anyh
     Ok(())
 }
 
-fn verify(
-    folder: &std::path::Path,
-    redo: usize,
-    threads: usize,
-    console: &Console,
-    ctx: &Context<'_>,
-) -> anyhow::Result<Exit> {
+fn verify(folder: &Path, redo: usize, threads: usize, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
     let merged = read_ledgers(folder)?;
     let mut findings = merged.inconsistencies();
     let missing = merged.missing().count();
@@ -433,7 +484,7 @@ fn verify(
 }
 
 fn show(what: &str, console: &Console) -> anyhow::Result<Exit> {
-    let path = std::path::Path::new(what);
+    let path = Path::new(what);
     if path.exists() {
         report_merged(&read_ledgers(path)?, console)?;
         return Ok(Exit::Done);

@@ -3,16 +3,16 @@
 use crate::console::Console;
 use crate::files;
 use anyhow::bail;
-use hexfill::enumerate::{Boundary, Code, EnumerateError, Params, canonical, shape};
 use hexfill::mesh::{QuadSurface, hex_signature};
-use hexfill::view::{GalleryItem, gallery};
+use hexfill::unstable::enumerate::{Boundary, Code, EnumerateError, Params, canonical, shape};
+use hexfill::unstable::view::{GalleryItem, gallery};
 use std::io::Write as _;
 
 /// More objects than these nobody looks through.
 const MOST: usize = 200;
 
 /// Refuses the file of a gallery before any work.
-pub fn check(file: &str) -> anyhow::Result<()> {
+pub(crate) fn check(file: &str) -> anyhow::Result<()> {
     if !file.to_ascii_lowercase().ends_with(".html") {
         bail!("{file}: a gallery is a page; give a name that ends in .html");
     }
@@ -21,14 +21,14 @@ pub fn check(file: &str) -> anyhow::Result<()> {
 
 /// The first objects, and how many there were.
 #[derive(Default)]
-pub struct Gallery {
+pub(crate) struct Gallery {
     items: Vec<GalleryItem>,
     objects: usize,
 }
 
 impl Gallery {
     /// Takes an object in, if there is still room.
-    pub fn add(&mut self, code: &Code) -> Result<(), EnumerateError> {
+    pub(crate) fn add(&mut self, code: &Code) -> Result<(), EnumerateError> {
         self.objects += 1;
         if self.items.len() == MOST {
             return Ok(());
@@ -60,7 +60,7 @@ impl Gallery {
     }
 
     /// Writes the page and says what is left out.
-    pub fn write(&self, file: &str, params: &Params, console: &Console) -> anyhow::Result<()> {
+    pub(crate) fn write(&self, file: &str, params: &Params, console: &Console) -> anyhow::Result<()> {
         let left_out = match self.objects - self.items.len() {
             0 => String::new(),
             n => format!(

@@ -6,14 +6,14 @@ use crate::files;
 use anyhow::bail;
 use hexfill::io::MeshData;
 use hexfill::mesh::QuadSurface;
-use hexfill::view::chord_drawing;
+use hexfill::unstable::view::chord_drawing;
 use hexfill::{MeshInfo, Problem, SurfaceInfo, describe_mesh, describe_surface};
 use std::fmt::Write as _;
 use std::io::Write as _;
 
 /// Flags of `info`.
 #[derive(clap::Args)]
-pub struct InfoArgs {
+pub(crate) struct InfoArgs {
     /// A surface or a mesh: a file, `-`, a catalogue name or a signature.
     input: String,
     #[command(flatten)]
@@ -27,7 +27,7 @@ pub struct InfoArgs {
 }
 
 /// Describes a surface or a mesh.
-pub fn run(args: &InfoArgs, console: &Console) -> anyhow::Result<Exit> {
+pub(crate) fn run(args: &InfoArgs, console: &Console) -> anyhow::Result<Exit> {
     if let Some(file) = &args.cycle {
         files::check_folder(file)?;
         if !["obj", "txt"].iter().any(|e| file.to_ascii_lowercase().ends_with(&format!(".{e}"))) {
@@ -54,10 +54,10 @@ pub fn run(args: &InfoArgs, console: &Console) -> anyhow::Result<Exit> {
         }
         Problem::from_data(&args.input, &data)?
     };
-    for note in &problem.notes {
+    for note in problem.notes() {
         console.note(note);
     }
-    let info = describe_surface(&problem.surface, problem.points.as_deref());
+    let info = describe_surface(problem.surface(), problem.points());
     if console.json {
         console.print_json(&info)?;
     } else {
@@ -66,14 +66,14 @@ pub fn run(args: &InfoArgs, console: &Console) -> anyhow::Result<Exit> {
     if let Some(file) = &args.cycle {
         match &info.bounding_cycle {
             Some(cycle) => {
-                write_cycle(file, cycle, problem.points.as_deref().unwrap_or(&[]))?;
+                write_cycle(file, cycle, problem.points().unwrap_or(&[]))?;
                 console.say(format!("wrote {file}: {} edges", cycle.len()));
             }
             None => console.note(format!("no odd cycle is known to bound inside; {file} was not written")),
         }
     }
     if let Some(file) = &args.svg {
-        draw_chords(file, &problem.surface, &args.input, console)?;
+        draw_chords(file, problem.surface(), &args.input, console)?;
     }
     Ok(Exit::Done)
 }
@@ -156,11 +156,7 @@ fn print_surface(info: &SurfaceInfo, console: &Console) -> anyhow::Result<()> {
     if let Some(limits) = &info.limits {
         limits.lines().into_iter().try_for_each(|line| console.print(line))?;
     }
-    console.print(match info.hex_mesh {
-        "exists" => format!("hex mesh: exists ({})", info.because),
-        "none" => format!("hex mesh: none exists: {}", info.because),
-        _ => format!("hex mesh: not known: {}", info.because),
-    })
+    console.print(info.existence.to_string())
 }
 
 fn mesh_info(args: &InfoArgs, data: &MeshData, console: &Console) -> anyhow::Result<Exit> {

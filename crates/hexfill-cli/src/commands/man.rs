@@ -7,13 +7,13 @@ use std::io::Write;
 
 /// Flags of `man`.
 #[derive(clap::Args)]
-pub struct ManArgs {
+pub(crate) struct ManArgs {
     /// The command to describe [default: hexfill as a whole].
     command: Option<String>,
 }
 
 /// Prints the page, made from the flags themselves.
-pub fn run(args: &ManArgs) -> anyhow::Result<Exit> {
+pub(crate) fn run(args: &ManArgs) -> anyhow::Result<Exit> {
     let mut whole = crate::Cli::command();
     whole.build();
     let page = match &args.command {

@@ -1,17 +1,17 @@
 //! One file per subcommand: its flags and the glue to the libraries.
 
-pub mod atlas;
-pub mod catalog;
-pub mod check;
-pub mod completions;
-pub mod convert;
-pub mod doctor;
-pub mod embed;
-pub mod enumerate;
-pub mod fill;
-mod fill_regions;
-pub mod gallery;
-pub mod info;
-pub mod man;
-pub mod simplify;
-pub mod view;
+pub(crate) mod atlas;
+pub(crate) mod catalog;
+pub(crate) mod check;
+pub(crate) mod completions;
+pub(crate) mod convert;
+pub(crate) mod doctor;
+pub(crate) mod embed;
+pub(crate) mod enumerate;
+pub(crate) mod fill;
+pub(crate) mod gallery;
+pub(crate) mod info;
+pub(crate) mod man;
+pub(crate) mod search;
+pub(crate) mod simplify;
+pub(crate) mod view;

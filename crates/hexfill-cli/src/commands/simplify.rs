@@ -1,13 +1,12 @@
 //! `hexfill simplify MESH -o OUT`: fewer hexes, the same boundary.
 
-use crate::commands::atlas::stop_word;
 use crate::console::Console;
 use crate::exit::Exit;
 use crate::files;
 use anyhow::{Context as _, bail};
 use hexfill::io::Format;
-use hexfill::search::Atlas;
-use hexfill::{Collapse, Context, SimplifyOptions};
+use hexfill::unstable::search::Atlas;
+use hexfill::{Collapse, Context, SimplifyOptions, StopReason};
 use serde::Serialize;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -23,7 +22,7 @@ enum Which {
 
 /// Flags of `simplify`.
 #[derive(clap::Args)]
-pub struct SimplifyArgs {
+pub(crate) struct SimplifyArgs {
     /// The hex mesh; its boundary stays as it is, positions bit for bit.
     mesh: String,
     /// The mesh to write; format by extension; `-` for stdout.
@@ -67,12 +66,12 @@ struct Output {
     looked_up: u64,
     /// Exchanges for fewer hexes, as many, more.
     exchanges: [u64; 3],
-    stopped: &'static str,
+    stopped: StopReason,
     seconds: f64,
 }
 
 /// Simplifies, judges, writes. Exit code 0 also if nothing smaller was found: the mesh is then written as it was.
-pub fn run(args: &SimplifyArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
+pub(crate) fn run(args: &SimplifyArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
     let start = Instant::now();
     files::check_output(&args.output, args.to)?;
     if console.json && args.output == "-" {
@@ -142,7 +141,7 @@ pub fn run(args: &SimplifyArgs, console: &Console, ctx: &Context<'_>) -> anyhow:
             balls: report.balls,
             looked_up: report.looked_up,
             exchanges: report.exchanges,
-            stopped: stop_word(report.stop),
+            stopped: report.stop,
             seconds,
         })?;
     }

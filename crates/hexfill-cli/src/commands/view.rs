@@ -6,12 +6,12 @@ use crate::files;
 use anyhow::bail;
 use hexfill::io::Format;
 use hexfill::mesh::{HexId, HexMesh, greedy_shelling};
-use hexfill::view::ViewInput;
+use hexfill::unstable::view::ViewInput;
 use std::io::Write;
 
 /// Flags of `view`.
 #[derive(clap::Args)]
-pub struct ViewArgs {
+pub(crate) struct ViewArgs {
     /// The mesh to show.
     mesh: String,
     /// The file to write: .html for a page that opens from disk, .png for a picture.
@@ -26,7 +26,7 @@ pub struct ViewArgs {
 }
 
 /// Reads a mesh and writes its page or picture.
-pub fn run(args: &ViewArgs, console: &Console) -> anyhow::Result<Exit> {
+pub(crate) fn run(args: &ViewArgs, console: &Console) -> anyhow::Result<Exit> {
     files::check_folder(&args.output)?;
     let data = files::read_data(&args.mesh, &args.from.into())?;
     for note in &data.notes {
@@ -39,8 +39,9 @@ pub fn run(args: &ViewArgs, console: &Console) -> anyhow::Result<Exit> {
         bail!("{} has no coordinates; compute them first or give a file that has", args.mesh);
     }
     let mesh = HexMesh::try_new(data.points.len(), &data.hexes)?;
-    let judged = hexfill::check::Judged::connectivity(data.points.len(), &data.hexes).with_points(&data.points);
-    let scaled_jacobians = hexfill::check::cell_quality(&judged)
+    let judged =
+        hexfill::unstable::check::Judged::connectivity(data.points.len(), &data.hexes).with_points(&data.points);
+    let scaled_jacobians = hexfill::unstable::check::cell_quality(&judged)
         .iter()
         .map(|c| c.as_ref().map_or(f64::NAN, |c| c.certified_lower))
         .collect();
@@ -67,7 +68,7 @@ pub fn run(args: &ViewArgs, console: &Console) -> anyhow::Result<Exit> {
 const SHELLING_LIMIT: usize = 20_000;
 
 /// A mesh to show.
-pub struct Shown<'a> {
+pub(crate) struct Shown<'a> {
     pub title: &'a str,
     pub points: &'a [[f64; 3]],
     pub mesh: &'a HexMesh,
@@ -89,15 +90,26 @@ impl Shown<'_> {
         }
     }
 
+    /// Writes the page and the picture that are asked for; returns their names.
+    pub(crate) fn write(&self, page: Option<String>, picture: Option<String>) -> anyhow::Result<Vec<String>> {
+        if let Some(path) = &page {
+            self.write_page(path)?;
+        }
+        if let Some(path) = &picture {
+            self.write_picture(path)?;
+        }
+        Ok(page.into_iter().chain(picture).collect())
+    }
+
     /// Writes the HTML page.
-    pub fn write_page(&self, path: &str) -> anyhow::Result<()> {
+    fn write_page(&self, path: &str) -> anyhow::Result<()> {
         let shelling = if self.mesh.n_hexes() <= SHELLING_LIMIT { greedy_shelling(self.mesh) } else { None };
-        files::write_file(path, |out| hexfill::view::write_html(&self.input(shelling.as_deref()), out))
+        files::write_file(path, |out| hexfill::unstable::view::write_html(&self.input(shelling.as_deref()), out))
     }
 
     /// Writes the PNG picture: the surface and a cut-away side by side.
-    pub fn write_picture(&self, path: &str) -> anyhow::Result<()> {
-        let bytes = hexfill::view::png(&self.input(None), 1200, 640);
+    fn write_picture(&self, path: &str) -> anyhow::Result<()> {
+        let bytes = hexfill::unstable::view::png(&self.input(None), 1200, 640);
         files::write_file(path, |out| out.write_all(&bytes))
     }
 }

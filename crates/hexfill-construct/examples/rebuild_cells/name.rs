@@ -5,15 +5,15 @@
 use hexfill_search::Cavity;
 
 /// Blocked pairs as bits: pair (a, b), a < b, is bit `b (b - 1) / 2 + a`.
-pub type Bits = Vec<u64>;
+pub(crate) type Bits = Vec<u64>;
 
 /// Whether every bit of `a` is one of `b`.
-pub fn is_subset(a: &Bits, b: &Bits) -> bool {
+pub(crate) fn is_subset(a: &Bits, b: &Bits) -> bool {
     a.iter().zip(b).all(|(a, b)| a & !b == 0)
 }
 
 /// Code and blocked pairs in the code's numbers.
-pub fn name(cavity: &Cavity) -> (Vec<u8>, Bits) {
+pub(crate) fn name(cavity: &Cavity) -> (Vec<u8>, Bits) {
     let quads = cavity.quads();
     let n = cavity.n_vertices();
     let twins = twins(&quads, n);

@@ -6,6 +6,7 @@
 use super::complex::TetComplex;
 use crate::error::ConstructError;
 use crate::ids::{FaceId, TetId};
+use crate::surface::existence::Existence;
 use hexfill_mesh::{Forest, IdVec, QuadId, QuadSurface};
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
@@ -20,7 +21,7 @@ pub(crate) struct Corridor {
 /// Pairs the odd components of each solid. None if no component is odd; linear time per pair.
 ///
 /// # Errors
-/// [`ConstructError::OddComponent`] if a solid has an odd number of quads in all; [`ConstructError::OddJoin`].
+/// [`ConstructError::NoMesh`] if a solid has an odd number of quads in all; [`ConstructError::OddJoin`].
 pub(crate) fn corridors(
     surface: &QuadSurface,
     complex: &TetComplex,
@@ -37,9 +38,11 @@ pub(crate) fn corridors(
     let mut found = Vec::new();
     for components in ways.solids(boundary) {
         let given: usize = components.iter().map(|&c| size[c]).sum();
-        let first = components.first().copied().unwrap_or(0);
         if !given.is_multiple_of(2) {
-            return Err(ConstructError::OddComponent { component: first, given });
+            return Err(ConstructError::NoMesh(Existence::OddSolid {
+                components: components.into_iter().collect(),
+                given,
+            }));
         }
         let mut odd: BTreeSet<usize> = components.into_iter().filter(|&c| !size[c].is_multiple_of(2)).collect();
         while let Some(a) = odd.pop_first() {

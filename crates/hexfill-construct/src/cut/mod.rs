@@ -20,8 +20,9 @@ use crate::ids::EdgeId;
 use crate::layer::Layer;
 use crate::plan::colouring::Colouring;
 use crate::plan::{Plan, stage};
+use crate::surface::existence::Existence;
 use classes::{Classes, edge_classes};
-use hexfill_mesh::{Buckets, Context, Dart, Edge, IdVec, Offenders, QuadId, QuadSurface, VertexId};
+use hexfill_mesh::{Buckets, Context, Dart, Edge, IdVec, QuadId, QuadSurface, VertexId};
 use std::collections::{BTreeSet, VecDeque};
 use system::{Form, System, sum};
 
@@ -31,7 +32,7 @@ pub(crate) type Sigma = IdVec<EdgeId, bool>;
 /// Extends Sigma from the surface to the core.
 ///
 /// # Errors
-/// [`ConstructError::OddCycleBounds`] with the certificate; [`ConstructError::Stopped`].
+/// [`ConstructError::NoMesh`] with the certificate; [`ConstructError::Stopped`].
 pub(crate) fn cut(
     plan: &Plan<'_>,
     inside: &Inside,
@@ -69,7 +70,7 @@ fn surface_edges(surface: &QuadSurface, inside: &Inside, layer: &Layer<'_>) -> I
 /// The set of cut edges. `surface_edge[d]` is the edge of the complex under dart `d`.
 ///
 /// # Errors
-/// [`ConstructError::OddCycleBounds`] with the certificate.
+/// [`ConstructError::NoMesh`] with the certificate.
 fn sigma(
     surface: &QuadSurface,
     colouring: &Colouring,
@@ -213,7 +214,5 @@ fn odd_cycle(surface: &QuadSurface, parent: &[Option<Dart>], sources: &BTreeSet<
             }
         }
     }
-    let cycle: Vec<Edge> = cycle.into_iter().collect();
-    let edges: Offenders<Edge> = cycle.iter().copied().collect();
-    ConstructError::OddCycleBounds { edges, cycle }
+    ConstructError::NoMesh(Existence::OddCycleBounds { cycle: cycle.into_iter().collect() })
 }

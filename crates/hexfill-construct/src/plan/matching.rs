@@ -9,6 +9,7 @@
 //! `construction` of the book, step 3.
 
 use crate::error::ConstructError;
+use crate::surface::existence::Existence;
 use hexfill_mesh::{Context, Dart, IdVec, QuadId, QuadSurface};
 
 /// The light sides, an odd number at each quad (but for those left open).
@@ -32,7 +33,7 @@ const SEARCH_LIMIT: usize = 4000;
 /// as small, but with other cells meeting at a vertex.
 ///
 /// # Errors
-/// [`ConstructError::OddComponent`] if a component has an odd number of quads and none is left open;
+/// [`ConstructError::NoMesh`] if a component has an odd number of quads and none is left open;
 /// [`ConstructError::Stopped`].
 pub fn light_sides(
     surface: &QuadSurface,
@@ -47,7 +48,10 @@ pub fn light_sides(
         size[surface.component(q)] += 1 + usize::from(*open);
     }
     if let Some(component) = size.iter().position(|s| s % 2 == 1) {
-        return Err(ConstructError::OddComponent { component, given: size[component] });
+        return Err(ConstructError::NoMesh(Existence::OddSolid {
+            components: vec![component],
+            given: size[component],
+        }));
     }
     let mut mate = greedy(surface, variant);
     augment(surface, &mut mate, ctx)?;
@@ -248,7 +252,7 @@ mod tests {
 
         assert!(matches!(
             light_sides(&torus(3, 5, 0).unwrap(), &[], 0, &Context::default()),
-            Err(ConstructError::OddComponent { component: 0, given: 15 })
+            Err(ConstructError::NoMesh(Existence::OddSolid { given: 15, .. }))
         ));
     }
 }

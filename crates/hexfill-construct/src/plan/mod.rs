@@ -8,9 +8,10 @@ pub(crate) mod sharp_vertices;
 use crate::cells::library::{CellChoice, CellLibrary};
 use crate::error::ConstructError;
 use crate::options::{ConstructOptions, RouteChoice};
+use crate::surface::existence::forbidden;
 use colouring::{Colouring, all_black, colouring};
 use hexfill_geometry::Vector;
-use hexfill_mesh::{Context, QuadSurface, improper_pairs};
+use hexfill_mesh::{Context, QuadSurface};
 use matching::{LightSides, light_sides};
 use sharp_vertices::relieve;
 
@@ -35,12 +36,8 @@ pub(crate) fn plan<'a>(
     options: &'a ConstructOptions,
     ctx: &Context<'_>,
 ) -> Result<Plan<'a>, ConstructError> {
-    if !surface.n_quads().is_multiple_of(2) {
-        return Err(ConstructError::OddQuads { given: surface.n_quads() });
-    }
-    let pairs = improper_pairs(surface);
-    if !pairs.is_empty() {
-        return Err(ConstructError::ImproperQuads { pairs });
+    if let Some(no) = forbidden(surface) {
+        return Err(ConstructError::NoMesh(no));
     }
     if let Some(given) = points.map(<[_]>::len).filter(|&n| n != surface.n_vertices()) {
         return Err(ConstructError::Points { given, needed: surface.n_vertices() });

@@ -9,6 +9,7 @@ use super::nesting::solids;
 use super::polygons::Darts;
 use hexfill_mesh::{Context, Edge, ImproperPair, Offenders, QuadId, QuadSurface, bipartition, improper_pairs};
 use std::collections::BTreeSet;
+use std::fmt;
 
 /// Whether a proper hex mesh with this boundary exists.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,16 +37,73 @@ pub enum Existence {
         /// Its edges, sorted: every vertex has an even number of them, and their number is odd.
         cycle: Vec<Edge>,
     },
-    /// No: some quads share more than a vertex or an edge.
+    /// No proper one: some quads share more than a vertex or an edge.
     ImproperQuads {
         /// The pairs.
         pairs: Offenders<ImproperPair>,
+        /// Whether the surface is a sphere; then it is not 3-connected.
+        sphere: bool,
     },
     /// Depends on the interior, which is not known.
     Unknown {
         /// What is missing.
         reason: String,
     },
+}
+
+/// Edges of a cycle that are shown.
+const SHOWN: usize = 20;
+
+/// The reason in a sentence; whether a mesh exists is for the caller to say.
+impl fmt::Display for Existence {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Exists { because } => f.write_str(because),
+            Self::OddQuads { given } => write!(
+                f,
+                "the surface has {given} quads, an odd number, but every hex has six facets and interior quads pair up (Thurston 1993, Mitchell 1996); split one quad or merge two"
+            ),
+            Self::OddSolid { components, given } => {
+                let names: Vec<String> = components.iter().map(ToString::to_string).collect();
+                let (noun, bound) = if names.len() == 1 { ("component", "bounds") } else { ("components", "bound") };
+                write!(
+                    f,
+                    "{noun} {} {bound} one solid with {given} quads, an odd number: every hex mesh of a connected solid has an even number of boundary quads (Thurston 1993)",
+                    names.join(", ")
+                )
+            }
+            Self::OddCycleBounds { cycle } => {
+                let shown: Vec<String> = cycle.iter().take(SHOWN).map(ToString::to_string).collect();
+                let more = if cycle.len() > SHOWN { " ..." } else { "" };
+                write!(f, "an odd cycle of {} edges bounds inside: {}{more}", cycle.len(), shown.join(" "))
+            }
+            Self::ImproperQuads { pairs, sphere } => {
+                let remark = if *sphere { " (the sphere is not 3-connected)" } else { "" };
+                write!(
+                    f,
+                    "{} pairs of quads share more than one edge, which no proper mesh allows{remark}: {pairs}; refine the surface there",
+                    pairs.count
+                )
+            }
+            Self::Unknown { reason } => f.write_str(reason),
+        }
+    }
+}
+
+impl Existence {
+    /// Whether it is known that there is no proper hex mesh.
+    pub fn is_none(&self) -> bool {
+        !matches!(self, Self::Exists { .. } | Self::Unknown { .. })
+    }
+}
+
+/// What the quads alone forbid: an odd number of them, or two that share too much. Linear time up to sorting round each vertex.
+pub fn forbidden(surface: &QuadSurface) -> Option<Existence> {
+    if !surface.n_quads().is_multiple_of(2) {
+        return Some(Existence::OddQuads { given: surface.n_quads() });
+    }
+    let pairs = improper_pairs(surface);
+    (!pairs.is_empty()).then(|| Existence::ImproperQuads { pairs, sphere: surface.is_sphere() })
 }
 
 /// Whether a solid (an outside and its cavities) has an odd number of quads, where components do.
@@ -82,12 +140,8 @@ fn odd_solid(surface: &QuadSurface, points: Option<&[[f64; 3]]>) -> Option<Exist
 
 /// Decides existence. `points` are needed only if the surface has odd cycles (never for spheres).
 pub fn existence(surface: &QuadSurface, points: Option<&[[f64; 3]]>) -> Existence {
-    if !surface.n_quads().is_multiple_of(2) {
-        return Existence::OddQuads { given: surface.n_quads() };
-    }
-    let pairs = improper_pairs(surface);
-    if !pairs.is_empty() {
-        return Existence::ImproperQuads { pairs };
+    if let Some(no) = forbidden(surface) {
+        return no;
     }
     if let Some(answer) = odd_solid(surface, points) {
         return answer;

@@ -6,10 +6,10 @@ use hexfill_construct::Construction;
 use hexfill_mesh::generate::torus;
 use hexfill_mesh::{Context, QuadSurface};
 
-pub type Points = Vec<[f64; 3]>;
+pub(crate) type Points = Vec<[f64; 3]>;
 
 /// Levels 1 to 3, the Euler characteristic of a handlebody with cavities (half that of its boundary), and that nothing is unused.
-pub fn check(surface: &QuadSurface, made: &Construction) {
+pub(crate) fn check(surface: &QuadSurface, made: &Construction) {
     let hexes: Vec<[u32; 8]> = made.mesh.hexes().iter().map(|h| h.map(|v| v.0)).collect();
     let quads: Vec<[u32; 4]> = surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
     let input = Judged::connectivity(made.mesh.n_vertices(), &hexes).with_surface(&quads);
@@ -28,20 +28,20 @@ pub fn check(surface: &QuadSurface, made: &Construction) {
 }
 
 /// The boundary of the filled cells of a grid, with positions.
-pub fn voxels(size: [usize; 3], filled: impl Fn([usize; 3]) -> bool) -> (QuadSurface, Points) {
+pub(crate) fn voxels(size: [usize; 3], filled: impl Fn([usize; 3]) -> bool) -> (QuadSurface, Points) {
     let (surface, points) = hexfill_mesh::generate::voxels(size, filled).unwrap();
     (surface, points.into_iter().map(|p| p.map(f64::from)).collect())
 }
 
 /// A plate with `genus` square holes, its cells cut into `fineness`^3, and single voxels taken out of its inside.
-pub fn plate(genus: usize, fineness: usize, cavities: &[[usize; 3]]) -> (QuadSurface, Points) {
+pub(crate) fn plate(genus: usize, fineness: usize, cavities: &[[usize; 3]]) -> (QuadSurface, Points) {
     let size = [(2 * genus + 1) * fineness, 3 * fineness, fineness];
     let is_hole = |p: [usize; 3]| (p[0] / fineness) % 2 == 1 && p[1] / fineness == 1;
     voxels(size, |p| !is_hole(p) && !cavities.contains(&p))
 }
 
 /// Positions of `torus(n, m, shift)` with tube radius `r` round a circle of radius 3: index `i` runs round the tube or the axis.
-pub fn torus_points(n: u32, m: u32, i_is_tube: bool, r: f64, at: [f64; 3]) -> Points {
+pub(crate) fn torus_points(n: u32, m: u32, i_is_tube: bool, r: f64, at: [f64; 3]) -> Points {
     let turn = std::f64::consts::TAU;
     let mut points = Points::new();
     for j in 0..m {
@@ -55,7 +55,7 @@ pub fn torus_points(n: u32, m: u32, i_is_tube: bool, r: f64, at: [f64; 3]) -> Po
     points
 }
 
-pub fn volume(surface: &QuadSurface, points: &[[f64; 3]]) -> f64 {
+pub(crate) fn volume(surface: &QuadSurface, points: &[[f64; 3]]) -> f64 {
     let mut volume = 0.0;
     for q in surface.quads() {
         let p = q.map(|v| points[v.index()]);
@@ -69,26 +69,26 @@ pub fn volume(surface: &QuadSurface, points: &[[f64; 3]]) -> f64 {
 }
 
 /// The same surface facing outward for these positions.
-pub fn outward(surface: &QuadSurface, points: &[[f64; 3]]) -> QuadSurface {
+pub(crate) fn outward(surface: &QuadSurface, points: &[[f64; 3]]) -> QuadSurface {
     if volume(surface, points) > 0.0 { surface.clone() } else { surface.inverted() }
 }
 
 /// A torus facing outward, or inward.
-pub fn torus_at(n: u32, m: u32, i_is_tube: bool, r: f64, at: [f64; 3], outward: bool) -> (QuadSurface, Points) {
+pub(crate) fn torus_at(n: u32, m: u32, i_is_tube: bool, r: f64, at: [f64; 3], outward: bool) -> (QuadSurface, Points) {
     let points = torus_points(n, m, i_is_tube, r, at);
     let surface = self::outward(&torus(n, m, 0).unwrap(), &points);
     (if outward { surface } else { surface.inverted() }, points)
 }
 
 /// A sphere of quads (a refined cube of half side `r`) facing outward, or inward.
-pub fn box_at(k: usize, r: f64, at: [f64; 3], outward: bool) -> (QuadSurface, Points) {
+pub(crate) fn box_at(k: usize, r: f64, at: [f64; 3], outward: bool) -> (QuadSurface, Points) {
     let (surface, points) = voxels([k, k, k], |_| true);
     let points = points.iter().map(|p| [0, 1, 2].map(|c| at[c] + r * (2.0 * p[c] / k as f64 - 1.0))).collect();
     (if outward { surface } else { surface.inverted() }, points)
 }
 
 /// Several surfaces as one.
-pub fn together(parts: &[(QuadSurface, Points)]) -> (QuadSurface, Points) {
+pub(crate) fn together(parts: &[(QuadSurface, Points)]) -> (QuadSurface, Points) {
     let (mut quads, mut points) = (Vec::new(), Points::new());
     for (surface, p) in parts {
         let shift = points.len() as u32;
@@ -99,7 +99,7 @@ pub fn together(parts: &[(QuadSurface, Points)]) -> (QuadSurface, Points) {
 }
 
 /// The same surface with one quad more: quads `a b e f` and `b c d e` at an edge become three round a new vertex in its middle.
-pub fn one_more((surface, points): (QuadSurface, Points)) -> (QuadSurface, Points) {
+pub(crate) fn one_more((surface, points): (QuadSurface, Points)) -> (QuadSurface, Points) {
     let (mut quads, mut points) = (surface.quads().iter().map(|q| q.map(|v| v.0)).collect::<Vec<_>>(), points);
     let d = surface
         .darts()
@@ -124,7 +124,7 @@ pub fn one_more((surface, points): (QuadSurface, Points)) -> (QuadSurface, Point
 }
 
 /// A box about the origin bulged, so that no three of its vertices are on a line.
-pub fn bulged((surface, points): (QuadSurface, Points)) -> (QuadSurface, Points) {
+pub(crate) fn bulged((surface, points): (QuadSurface, Points)) -> (QuadSurface, Points) {
     let largest = points.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
     let points = points.iter().map(|p| {
         let square: f64 = p.iter().map(|x| (x / largest).powi(2)).sum();
@@ -134,7 +134,7 @@ pub fn bulged((surface, points): (QuadSurface, Points)) -> (QuadSurface, Points)
 }
 
 /// The vertices and quads of an OBJ file.
-pub fn read_obj(text: &str) -> (QuadSurface, Points) {
+pub(crate) fn read_obj(text: &str) -> (QuadSurface, Points) {
     let data = hexfill_io::read_from(text.as_bytes(), hexfill_io::Format::Obj, "surface").unwrap();
     (data.quad_surface().unwrap(), data.points)
 }

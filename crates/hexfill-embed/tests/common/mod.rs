@@ -7,26 +7,26 @@ use serde::Deserialize;
 
 /// A mesh with the coordinates of its boundary.
 #[derive(Deserialize)]
-pub struct Sample {
+pub(crate) struct Sample {
     pub hexes: Vec<[u32; 8]>,
     pub boundary_points: Vec<[f64; 3]>,
 }
 
 impl Sample {
     /// Reads `tests/data/NAME.json`.
-    pub fn read(name: &str) -> Self {
+    pub(crate) fn read(name: &str) -> Self {
         let path = format!("{}/tests/data/{name}.json", env!("CARGO_MANIFEST_DIR"));
         serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
     }
 
-    pub fn mesh(&self) -> HexMesh {
+    pub(crate) fn mesh(&self) -> HexMesh {
         let n = self.hexes.iter().flatten().max().map_or(0, |&v| v as usize + 1);
         HexMesh::try_new(n, &self.hexes).unwrap()
     }
 }
 
 /// The cube cut into n x n x n hexes, and its points; interior points are moved by up to `noise` cells (fixed pseudo-random).
-pub fn grid(n: usize, noise: f64) -> (HexMesh, Vec<[f64; 3]>) {
+pub(crate) fn grid(n: usize, noise: f64) -> (HexMesh, Vec<[f64; 3]>) {
     let at = |i: usize, j: usize, k: usize| (i + (n + 1) * (j + (n + 1) * k)) as u32;
     let mut hexes = Vec::new();
     let mut points = Vec::new();
@@ -53,7 +53,7 @@ pub fn grid(n: usize, noise: f64) -> (HexMesh, Vec<[f64; 3]>) {
 }
 
 /// A ball: the cube cut into n x n x n hexes behind a pillow of 6 n^2, whose outer vertices lie on the unit sphere; and first points.
-pub fn ball(n: usize) -> (HexMesh, Vec<[f64; 3]>) {
+pub(crate) fn ball(n: usize) -> (HexMesh, Vec<[f64; 3]>) {
     let (cube, points) = grid(n, 0.0);
     let mut points: Vec<[f64; 3]> = points.iter().map(|p| p.map(|x| x - 0.5)).collect();
     let mut outer = vec![u32::MAX; points.len()];
@@ -76,7 +76,7 @@ pub fn ball(n: usize) -> (HexMesh, Vec<[f64; 3]>) {
 }
 
 /// Whether the independent judge certifies det J > 0 in every hex, and its certified interval of the worst scaled Jacobian.
-pub fn certified(mesh: &HexMesh, points: &[[f64; 3]]) -> (bool, [f64; 2]) {
+pub(crate) fn certified(mesh: &HexMesh, points: &[[f64; 3]]) -> (bool, [f64; 2]) {
     let hexes = mesh.hexes_raw();
     let input = Judged::connectivity(mesh.n_vertices(), &hexes).with_points(points);
     let report = judge(&input, &hexfill_check::Options::default().quality(true), &Context::default());
@@ -85,7 +85,7 @@ pub fn certified(mesh: &HexMesh, points: &[[f64; 3]]) -> (bool, [f64; 2]) {
 }
 
 /// The boundary vertices of `points` have the bits of `boundary`.
-pub fn assert_boundary_kept(mesh: &HexMesh, boundary: &[[f64; 3]], points: &[[f64; 3]]) {
+pub(crate) fn assert_boundary_kept(mesh: &HexMesh, boundary: &[[f64; 3]], points: &[[f64; 3]]) {
     for (v, _) in mesh.boundary_vertices().iter().enumerate().filter(|(_, on)| **on) {
         assert_eq!(points[v].map(f64::to_bits), boundary[v].map(f64::to_bits), "vertex {v} moved");
     }

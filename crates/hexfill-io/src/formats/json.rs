@@ -59,81 +59,103 @@ struct File {
 }
 
 pub(crate) fn read(mut source: Source<'_>) -> Result<MeshData, ReadError> {
-    let skipped = source.skip_blank()?.ok_or_else(|| source.empty())?;
-    let place = |source: &Source<'_>, line: usize| {
-        let position = if line == 0 { Position::Whole } else { Position::Line(line as u64 + skipped) };
-        Box::new(Place { file: source.file().to_owned(), format: source.format(), position })
-    };
-    let parsed: Result<File, _> = serde_json::from_reader(source.reader());
-    let file = match parsed {
-        Ok(file) => file,
-        Err(e) if e.is_io() => return Err(source.io_error(e.into())),
-        Err(e) if e.is_eof() => {
-            return Err(ReadError::Truncated {
-                at: place(&source, e.line()),
-                expected: "the end of the object".to_owned(),
-            });
-        }
-        Err(e) => {
-            let mut given = e.to_string();
-            if let Some(cut) = given.rfind(" at line ") {
-                given.truncate(cut);
-            }
-            return Err(ReadError::Malformed {
-                at: place(&source, e.line()),
-                expected: "an object with `hexes`, `boundary_quads` and perhaps `points`".to_owned(),
-                given,
-                remedy: "correct this place".to_owned(),
-            });
-        }
-    };
-    let malformed = |expected: String, given: String, remedy: &str| {
-        Err(ReadError::Malformed { at: place(&source, 0), expected, given, remedy: remedy.to_owned() })
-    };
+    let file = parse(&mut source)?;
     if file.hexes.is_empty() && file.boundary_quads.is_empty() {
-        return malformed("`hexes` or `boundary_quads`".to_owned(), "neither".to_owned(), "is this a mesh?");
+        let expected = "`hexes` or `boundary_quads`".to_owned();
+        return Err(malformed(&source, expected, "neither".to_owned(), "is this a mesh?"));
     }
+    let n_points = check_indices(&source, &file)?;
+    check_lengths(&source, &file, n_points)?;
+    assemble(&source, file)
+}
+
+/// The place of a line of the object, which begins after `skipped` blank lines; line 0 is the file as a whole.
+fn place(source: &Source<'_>, line: usize, skipped: u64) -> Box<Place> {
+    let position = if line == 0 { Position::Whole } else { Position::Line(line as u64 + skipped) };
+    Box::new(Place { file: source.file().to_owned(), format: source.format(), position })
+}
+
+/// What is wrong with the object as a whole: the parser keeps no lines of its parts.
+fn malformed(source: &Source<'_>, expected: String, given: String, remedy: &str) -> ReadError {
+    ReadError::Malformed { at: place(source, 0, 0), expected, given, remedy: remedy.to_owned() }
+}
+
+fn parse(source: &mut Source<'_>) -> Result<File, ReadError> {
+    let skipped = source.skip_blank()?.ok_or_else(|| source.empty())?;
+    let error = match serde_json::from_reader(source.reader()) {
+        Ok(file) => return Ok(file),
+        Err(e) if e.is_io() => return Err(source.io_error(e.into())),
+        Err(e) => e,
+    };
+    let at = place(source, error.line(), skipped);
+    if error.is_eof() {
+        return Err(ReadError::Truncated { at, expected: "the end of the object".to_owned() });
+    }
+    let mut given = error.to_string();
+    if let Some(cut) = given.rfind(" at line ") {
+        given.truncate(cut);
+    }
+    let expected = "an object with `hexes`, `boundary_quads` and perhaps `points`".to_owned();
+    Err(ReadError::Malformed { at, expected, given, remedy: "correct this place".to_owned() })
+}
+
+/// Checks that every index names a point; the number of points.
+fn check_indices(source: &Source<'_>, file: &File) -> Result<usize, ReadError> {
     let n_indices = 8 * file.hexes.len() + file.boundary_quads.iter().map(Vec::len).sum::<usize>();
-    let indices = || file.hexes.iter().flatten().chain(file.boundary_quads.iter().flatten()).copied();
-    let largest = indices().max().unwrap_or(0);
+    let indices = file.hexes.iter().flatten().chain(file.boundary_quads.iter().flatten()).copied();
+    let largest = indices.max().unwrap_or(0);
     let n_points = file.points.as_ref().map_or_else(|| largest as usize + 1, Vec::len);
     if largest as usize >= n_points {
-        let (at, what) = (place(&source, 0), "point".to_owned());
+        let (at, what) = (place(source, 0, 0), "point".to_owned());
         let highest = n_points as i64 - 1;
         return Err(ReadError::IndexOutOfRange { at, what, given: i64::from(largest), lowest: 0, highest });
     }
     if file.points.is_none() && largest as usize >= n_indices {
         // Every vertex that exists is used somewhere; this also keeps a small file from claiming a huge mesh.
         let expected = format!("indices without large gaps (the file lists {n_indices})");
-        return malformed(expected, format!("index {largest}"), "renumber the vertices from 0, or give `points`");
+        let given = format!("index {largest}");
+        return Err(malformed(source, expected, given, "renumber the vertices from 0, or give `points`"));
     }
     if let Some(i) = file.boundary_quads.iter().position(|q| q.len() < 3) {
-        return malformed("faces with three or more vertices".to_owned(), format!("face {i}"), "complete the face");
+        let expected = "faces with three or more vertices".to_owned();
+        return Err(malformed(source, expected, format!("face {i}"), "complete the face"));
     }
-    let n_quads = file.boundary_quads.len();
+    Ok(n_points)
+}
+
+/// Checks that tags and data have one value for each point, face or hex.
+fn check_lengths(source: &Source<'_>, file: &File, n_points: usize) -> Result<(), ReadError> {
     for (name, tags, due) in [
         ("point_tags", &file.point_tags, n_points),
-        ("quad_tags", &file.quad_tags, n_quads),
+        ("quad_tags", &file.quad_tags, file.boundary_quads.len()),
         ("hex_tags", &file.hex_tags, file.hexes.len()),
     ] {
         if let Some(tags) = tags.as_ref().filter(|t| t.len() != due) {
-            return malformed(format!("{due} `{name}`"), format!("{}", tags.len()), "give one each");
+            return Err(malformed(source, format!("{due} `{name}`"), format!("{}", tags.len()), "give one each"));
         }
     }
+    // Data are on quads proper, tags on faces of any number of sides.
+    let n_quads = file.boundary_quads.iter().filter(|q| q.len() == 4).count();
     for (name, arrays, due) in [
         ("point_data", &file.point_data, n_points),
-        ("quad_data", &file.quad_data, file.boundary_quads.iter().filter(|q| q.len() == 4).count()),
+        ("quad_data", &file.quad_data, n_quads),
         ("hex_data", &file.hex_data, file.hexes.len()),
     ] {
         if let Some((array, values)) = arrays.0.iter().find(|(_, v)| v.len() != due) {
             let expected = format!("{due} values of `{array}` in `{name}`");
-            return malformed(expected, format!("{}", values.len()), "give one each");
+            return Err(malformed(source, expected, format!("{}", values.len()), "give one each"));
         }
     }
+    Ok(())
+}
+
+/// The mesh of a file whose indices and lengths are checked.
+fn assemble(source: &Source<'_>, file: File) -> Result<MeshData, ReadError> {
     let mut names = Vec::new();
     for (on, tag, name) in file.tag_names {
         let Some(&(_, on)) = ON.iter().find(|(word, _)| *word == on) else {
-            return malformed("`points`, `faces` or `cells` in `tag_names`".to_owned(), on, "correct it");
+            let expected = "`points`, `faces` or `cells` in `tag_names`".to_owned();
+            return Err(malformed(source, expected, on, "correct it"));
         };
         names.push(TagName { on, tag, name });
     }
@@ -148,13 +170,12 @@ pub(crate) fn read(mut source: Source<'_>) -> Result<MeshData, ReadError> {
     for (i, &hex) in file.hexes.iter().enumerate() {
         out.hex(hex, file.hex_tags.as_ref().map_or(0, |t| t[i]));
     }
-    let point_tags = file.point_tags;
     let has_coordinates = file.points.is_some();
     out.mesh.points = file.points.unwrap_or_default();
     let mut mesh = out.finish();
     mesh.has_coordinates = has_coordinates;
     (mesh.point_data, mesh.quad_data, mesh.hex_data) = (file.point_data.0, file.quad_data.0, file.hex_data.0);
-    mesh.point_tags = point_tags.filter(|tags| tags.iter().any(|&t| t != 0));
+    mesh.point_tags = file.point_tags.filter(|tags| tags.iter().any(|&t| t != 0));
     Ok(mesh)
 }
 

@@ -27,6 +27,52 @@ const CELLS: [(&str, usize); 9] = [
 pub(crate) fn read(source: Source<'_>) -> Result<MeshData, ReadError> {
     let mut s = source.with_comments(b'#');
     let mut out = Assembly::default();
+    read_version(&mut s, &mut out)?;
+    let mut is_flat = false;
+    let mut seen: Vec<String> = Vec::new();
+    let mut ended = false;
+    while let Some(span) = s.word_anywhere()? {
+        let keyword = s.string(span);
+        if !keyword.starts_with(|c: char| c.is_ascii_alphabetic()) {
+            let remedy = "correct the count of the section before";
+            return Err(s.malformed("a keyword of MEDIT", span, remedy));
+        }
+        if keyword == "End" {
+            ended = true;
+            break;
+        }
+        let cells = CELLS.iter().find(|(name, _)| *name == keyword);
+        let kept = cells.is_some() || keyword == "Vertices" || keyword == "Dimension";
+        if kept && seen.contains(&keyword) {
+            return Err(s.malformed("each section once", span, "remove the repeated section"));
+        }
+        if keyword == "Dimension" {
+            is_flat = read_dimension(&mut s, &mut out)?;
+        } else if keyword == "Vertices" {
+            read_points(&mut s, is_flat, &mut out)?;
+        } else if let Some(&(_, n_nodes)) = cells {
+            if !seen.iter().any(|k| k == "Vertices") {
+                return Err(s.unsupported(format!("{keyword} before Vertices"), "put the points first"));
+            }
+            read_cells(&mut s, &keyword, n_nodes, &mut out)?;
+        } else {
+            skip_section(&mut s)?;
+            out.ignore(&format!("`{keyword}` sections"));
+        }
+        seen.push(keyword);
+    }
+    if !seen.iter().any(|k| k == "Vertices") {
+        return Err(s.truncated("a section Vertices"));
+    }
+    if !ended {
+        out.note("the file has no `End`: it may be cut off between two sections");
+    }
+    out.name_tags(s.take_tag_names().into_iter());
+    Ok(out.finish())
+}
+
+/// The first line, `MeshVersionFormatted` and the version.
+fn read_version(s: &mut Source<'_>, out: &mut Assembly) -> Result<(), ReadError> {
     let Some(first) = s.word_anywhere()? else { return Err(s.empty()) };
     if s.text(first) == b"MFEM" {
         return Err(s.unsupported("an MFEM mesh", "save it as Gmsh 2.2 or VTK"));
@@ -44,76 +90,50 @@ pub(crate) fn read(source: Source<'_>) -> Result<MeshData, ReadError> {
     if version == 1 {
         out.note("MEDIT version 1: the coordinates may have been written with 32 bits");
     }
-    let mut dimension = 3;
-    let mut seen: Vec<String> = Vec::new();
-    let mut ended = false;
-    let mut nodes = Vec::new();
-    while let Some(span) = s.word_anywhere()? {
-        let keyword = s.string(span);
-        if !keyword.starts_with(|c: char| c.is_ascii_alphabetic()) {
-            let remedy = "correct the count of the section before";
-            return Err(s.malformed("a keyword of MEDIT", span, remedy));
+    Ok(())
+}
+
+/// The dimension; whether points have no z.
+fn read_dimension(s: &mut Source<'_>, out: &mut Assembly) -> Result<bool, ReadError> {
+    let span = s.need_word_anywhere("the dimension")?;
+    match s.integer(span, "the dimension")? {
+        2 => {
+            out.note("dimension 2: z is set to 0");
+            Ok(true)
         }
-        if keyword == "End" {
-            ended = true;
-            break;
-        }
-        let cells = CELLS.iter().find(|(name, _)| *name == keyword);
-        let kept = cells.is_some() || keyword == "Vertices" || keyword == "Dimension";
-        if kept && seen.contains(&keyword) {
-            return Err(s.malformed("each section once", span, "remove the repeated section"));
-        }
-        if keyword == "Dimension" {
-            let span = s.need_word_anywhere("the dimension")?;
-            dimension = s.integer(span, "the dimension")?;
-            if dimension == 2 {
-                out.note("dimension 2: z is set to 0");
-            } else if dimension != 3 {
-                return Err(s.malformed("dimension 2 or 3", span, "export a mesh in space"));
-            }
-        } else if keyword == "Vertices" {
-            read_points(&mut s, dimension == 2, &mut out)?;
-        } else if let Some((_, n_nodes)) = cells {
-            if !seen.iter().any(|k| k == "Vertices") {
-                return Err(s.unsupported(format!("{keyword} before Vertices"), "put the points first"));
-            }
-            let span = s.need_word_anywhere(&format!("the number of {keyword}"))?;
-            let n = s.count(span, &keyword)?;
-            for i in 0..n {
-                let missing = || format!("{n} {keyword}, found {i}");
-                nodes.clear();
-                for _ in 0..*n_nodes {
-                    let span = s.need_word_anywhere_or(missing)?;
-                    nodes.push(s.index(span, 1, out.mesh.points.len(), "vertex")?);
-                }
-                let span = s.need_word_anywhere_or(missing)?;
-                let tag = s.integer(span, "a reference number")?;
-                match (keyword.as_str(), <[u32; 8]>::try_from(nodes.as_slice())) {
-                    (_, Ok(hex)) => {
-                        out.hex(hex, tag);
-                    }
-                    ("Triangles" | "Quadrilaterals" | "Quads", _) => {
-                        out.face(&nodes, tag);
-                    }
-                    _ => {
-                        out.small_cell(&nodes, tag);
-                    }
-                }
-            }
-        } else {
-            skip_section(&mut s)?;
-            out.ignore(&format!("`{keyword}` sections"));
-        }
-        seen.push(keyword);
+        3 => Ok(false),
+        _ => Err(s.malformed("dimension 2 or 3", span, "export a mesh in space")),
     }
-    if !seen.iter().any(|k| k == "Vertices") {
-        return Err(s.truncated("a section Vertices"));
+}
+
+/// A section of faces or cells: their nodes (from 1) and reference numbers.
+fn read_cells(s: &mut Source<'_>, keyword: &str, n_nodes: usize, out: &mut Assembly) -> Result<(), ReadError> {
+    let span = s.need_word_anywhere(&format!("the number of {keyword}"))?;
+    let n = s.count(span, keyword)?;
+    let mut nodes = Vec::with_capacity(n_nodes);
+    for i in 0..n {
+        let missing = || format!("{n} {keyword}, found {i}");
+        nodes.clear();
+        for _ in 0..n_nodes {
+            let span = s.need_word_anywhere_or(missing)?;
+            nodes.push(s.index(span, 1, out.mesh.points.len(), "vertex")?);
+        }
+        let span = s.need_word_anywhere_or(missing)?;
+        let tag = s.integer(span, "a reference number")?;
+        // Tetrahedra have as many nodes as quads: the keyword tells them apart.
+        match (keyword, <[u32; 8]>::try_from(nodes.as_slice())) {
+            (_, Ok(hex)) => {
+                out.hex(hex, tag);
+            }
+            ("Triangles" | "Quadrilaterals" | "Quads", _) => {
+                out.face(&nodes, tag);
+            }
+            _ => {
+                out.small_cell(&nodes, tag);
+            }
+        }
     }
-    if !ended {
-        out.note("the file has no `End`: it may be cut off between two sections");
-    }
-    out.name_tags(s.take_tag_names().into_iter());
-    Ok(out.finish())
+    Ok(())
 }
 
 fn read_points(s: &mut Source<'_>, flat: bool, out: &mut Assembly) -> Result<(), ReadError> {

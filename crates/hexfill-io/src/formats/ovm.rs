@@ -22,7 +22,10 @@ use topology::Topology;
 const FACE_MARK: &str = "hexfill:face";
 const CORNER_MARK: &str = "hexfill:corner";
 
-/// The cell types, by the corners of their half-faces in the file.
+/// A property that is data: on what, name, components, values.
+type Array = (On, String, usize, Vec<f64>);
+
+/// The properties of a file, ours by their names.
 #[derive(Default)]
 struct Properties {
     point_tags: Option<Vec<i64>>,
@@ -30,8 +33,7 @@ struct Properties {
     cell_tags: Option<Vec<i64>>,
     face_marks: Option<Vec<i64>>,
     corners: Option<Vec<i64>>,
-    /// Other properties: on what, name, components, values.
-    arrays: Vec<(On, String, usize, Vec<f64>)>,
+    arrays: Vec<Array>,
 }
 
 /// What a property is on.
@@ -56,6 +58,34 @@ fn components_of(scalar: &str) -> usize {
 pub(crate) fn read(source: Source<'_>) -> Result<MeshData, ReadError> {
     let mut s = source.with_comments(b'#');
     let mut out = Assembly::default();
+    read_header(&mut s)?;
+    read_points(&mut s, &mut out)?;
+    let n_points = out.mesh.points.len();
+    let edges = read_edges(&mut s, n_points)?;
+    let n = open_section(&mut s, "Faces")?;
+    let mut faces: Vec<Vec<u32>> = Vec::with_capacity(reserve(n));
+    for i in 0..n {
+        line(&mut s, n, "faces", i)?;
+        faces.push(read_face(&mut s, &edges)?);
+    }
+    let polyhedra = read_polyhedra(&mut s, faces.len())?;
+    let properties = read_properties(&mut s, &mut out, n_points, faces.len(), polyhedra.cells.len())?;
+    let face_slots = add_faces(&mut out, &faces, &polyhedra.of_face, &properties);
+    let mut cell_slots = Vec::with_capacity(polyhedra.cells.len());
+    for (c, cell) in polyhedra.cells.iter().enumerate() {
+        let tag = properties.cell_tags.as_ref().map_or(0, |t| t[c]);
+        let corner = properties.corners.as_ref().and_then(|t| u32::try_from(t[c]).ok());
+        cell_slots.push(add_cell(&s, &mut out, &faces, cell, corner, tag, c)?);
+    }
+    add_arrays(&mut out, properties.arrays, &face_slots, &cell_slots);
+    out.name_tags(s.take_tag_names().into_iter());
+    if let Some(tags) = properties.point_tags {
+        out.point_tags = tags;
+    }
+    Ok(out.finish())
+}
+
+fn read_header(s: &mut Source<'_>) -> Result<(), ReadError> {
     if !s.next_full_line()? {
         return Err(s.empty());
     }
@@ -67,17 +97,24 @@ pub(crate) fn read(source: Source<'_>) -> Result<MeshData, ReadError> {
     if !s.text(span).eq_ignore_ascii_case(b"ASCII") {
         return Err(s.unsupported("binary OVM", "save it as ASCII"));
     }
-    let n = open_section(&mut s, "Vertices")?;
+    Ok(())
+}
+
+fn read_points(s: &mut Source<'_>, out: &mut Assembly) -> Result<(), ReadError> {
+    let n = open_section(s, "Vertices")?;
     out.mesh.points.reserve(reserve(n));
     for i in 0..n {
-        line(&mut s, n, "points", i)?;
+        line(s, n, "points", i)?;
         out.mesh.points.push(s.point_on_line()?);
     }
-    let n_points = out.mesh.points.len();
-    let n = open_section(&mut s, "Edges")?;
+    Ok(())
+}
+
+fn read_edges(s: &mut Source<'_>, n_points: usize) -> Result<Vec<[u32; 2]>, ReadError> {
+    let n = open_section(s, "Edges")?;
     let mut edges: Vec<[u32; 2]> = Vec::with_capacity(reserve(n));
     for i in 0..n {
-        line(&mut s, n, "edges", i)?;
+        line(s, n, "edges", i)?;
         let mut edge = [0; 2];
         for end in &mut edge {
             let span = s.need_word("a vertex")?;
@@ -85,55 +122,64 @@ pub(crate) fn read(source: Source<'_>) -> Result<MeshData, ReadError> {
         }
         edges.push(edge);
     }
-    let n = open_section(&mut s, "Faces")?;
-    let mut faces: Vec<Vec<u32>> = Vec::with_capacity(reserve(n));
-    for i in 0..n {
-        line(&mut s, n, "faces", i)?;
-        faces.push(read_face(&mut s, &edges)?);
-    }
-    let n = open_section(&mut s, "Polyhedra")?;
+    Ok(edges)
+}
+
+/// The cells of a file.
+struct Polyhedra {
+    /// Half-faces per cell.
+    cells: Vec<Vec<u32>>,
+    /// Per face: number of cells, and the last half-face of it that a cell has.
+    of_face: Vec<(u8, u32)>,
+}
+
+fn read_polyhedra(s: &mut Source<'_>, n_faces: usize) -> Result<Polyhedra, ReadError> {
+    let n = open_section(s, "Polyhedra")?;
     let mut cells: Vec<Vec<u32>> = Vec::with_capacity(reserve(n));
-    // Per face: number of cells, and the last half-face of it that a cell has.
-    let mut cells_of_face = vec![(0u8, 0u32); faces.len()];
+    let mut of_face = vec![(0u8, 0u32); n_faces];
     for i in 0..n {
-        line(&mut s, n, "polyhedra", i)?;
+        line(s, n, "polyhedra", i)?;
         let span = s.need_word("the number of faces")?;
         let sides = s.count(span, "faces")?;
         let mut cell = Vec::new();
         for _ in 0..sides {
             let span = s.need_word_or(|| format!("{sides} half-faces"))?;
-            let half_face = s.index(span, 0, 2 * faces.len(), "half-face")?;
-            let users = &mut cells_of_face[half_face as usize / 2];
+            let half_face = s.index(span, 0, 2 * n_faces, "half-face")?;
+            let users = &mut of_face[half_face as usize / 2];
             *users = (users.0.saturating_add(1), half_face);
             cell.push(half_face);
         }
         cells.push(cell);
     }
-    let properties = read_properties(&mut s, &mut out, n_points, faces.len(), cells.len())?;
-    let mut face_slots = vec![Slot::Elsewhere; faces.len()];
+    Ok(Polyhedra { cells, of_face })
+}
+
+/// Adds the faces of the mesh: those that our own property marks, otherwise those with at most one cell. Where each face went.
+fn add_faces(out: &mut Assembly, faces: &[Vec<u32>], of_face: &[(u8, u32)], properties: &Properties) -> Vec<Slot> {
+    let mut slots = vec![Slot::Elsewhere; faces.len()];
     for (f, face) in faces.iter().enumerate() {
+        let (n_cells, half_face) = of_face[f];
         let listed = match &properties.face_marks {
             Some(marks) => marks[f] != 0,
-            None => cells_of_face[f].0 <= 1,
+            None => n_cells <= 1,
         };
-        if listed {
-            // Without marks the faces have no orientation of their own: one whose cell is on its inner side is turned outwards.
-            let mut face = face.clone();
-            if properties.face_marks.is_none() && cells_of_face[f].0 == 1 && cells_of_face[f].1.is_multiple_of(2) {
-                face[1..].reverse();
-            }
-            face_slots[f] = out.face(&face, properties.face_tags.as_ref().map_or(0, |t| t[f]));
+        if !listed {
+            continue;
         }
+        let mut face = face.clone();
+        // Without marks the faces have no orientation of their own: one whose cell is on its inner side is turned outwards.
+        if properties.face_marks.is_none() && n_cells == 1 && half_face.is_multiple_of(2) {
+            face[1..].reverse();
+        }
+        slots[f] = out.face(&face, properties.face_tags.as_ref().map_or(0, |t| t[f]));
     }
-    let mut cell_slots = Vec::with_capacity(cells.len());
-    for (c, cell) in cells.iter().enumerate() {
-        let tag = properties.cell_tags.as_ref().map_or(0, |t| t[c]);
-        let corner = properties.corners.as_ref().and_then(|t| u32::try_from(t[c]).ok());
-        cell_slots.push(add_cell(&s, &mut out, &faces, cell, corner, tag, c)?);
-    }
+    slots
+}
+
+fn add_arrays(out: &mut Assembly, arrays: Vec<Array>, face_slots: &[Slot], cell_slots: &[Slot]) {
     // The faces that only cells have carry no data of their own.
-    let listed: Vec<usize> = (0..faces.len()).filter(|&f| face_slots[f] != Slot::Elsewhere).collect();
-    for (on, name, components, values) in properties.arrays {
+    let listed: Vec<usize> = (0..face_slots.len()).filter(|&f| face_slots[f] != Slot::Elsewhere).collect();
+    for (on, name, components, values) in arrays {
         match on {
             On::Points => out.point_array(&name, components, &Values::Real(values)),
             On::Faces => {
@@ -141,14 +187,9 @@ pub(crate) fn read(source: Source<'_>) -> Result<MeshData, ReadError> {
                 let values = listed.iter().flat_map(|f| &values[f * components..][..components]).copied().collect();
                 out.cell_array(&name, components, &Values::Real(values), &slots);
             }
-            On::Cells => out.cell_array(&name, components, &Values::Real(values), &cell_slots),
+            On::Cells => out.cell_array(&name, components, &Values::Real(values), cell_slots),
         }
     }
-    out.name_tags(s.take_tag_names().into_iter());
-    if let Some(tags) = properties.point_tags {
-        out.point_tags = tags;
-    }
-    Ok(out.finish())
 }
 
 fn line(s: &mut Source<'_>, n: u64, what: &str, i: u64) -> Result<(), ReadError> {

@@ -400,93 +400,138 @@ fn read_faces(s: &mut Source<'_>, encoding: Encoding, element: &Element, out: &m
 pub(crate) const LARGEST_TAG: i64 = 1 << 53;
 
 pub(crate) fn write(out: &mut dyn Write, data: &MeshData, binary: bool) -> io::Result<()> {
-    let wide = all_tags(data).any(|t| i32::try_from(t).is_err());
-    let tag_type = if wide { "double" } else { "int" };
-    let longest = data.faces().map(<[u32]>::len).max().unwrap_or(0);
-    let length_type = if longest > 255 { "uint" } else { "uchar" };
-    let cell_tags = has_cell_tags(data);
-    writeln!(out, "ply\nformat {} 1.0", if binary { "binary_little_endian" } else { "ascii" })?;
-    for name in &data.tag_names {
-        writeln!(out, "comment {}", name.line())?;
+    let writer = Writer::new(data, binary);
+    writer.header(out)?;
+    writer.points(out)?;
+    writer.faces(out)
+}
+
+/// What is written, and as which types.
+struct Writer<'a> {
+    data: &'a MeshData,
+    binary: bool,
+    /// Some tag needs more than 32 bits: tags are doubles then, because PLY has no wider whole type.
+    wide: bool,
+    /// Some face has more than 255 sides, which the usual type of lengths does not hold.
+    long: bool,
+    /// Whether faces have tags.
+    face_tags: bool,
+    on_faces: Vec<(String, CellColumn<'a>)>,
+}
+
+impl<'a> Writer<'a> {
+    fn new(data: &'a MeshData, binary: bool) -> Self {
+        Self {
+            data,
+            binary,
+            wide: all_tags(data).any(|t| i32::try_from(t).is_err()),
+            long: data.faces().any(|face| face.len() > 255),
+            face_tags: has_cell_tags(data),
+            on_faces: single_columns(data),
+        }
     }
-    let on_points: Vec<&[f64]> = data.point_data.iter().map(|(_, values)| values.as_slice()).collect();
-    let on_faces: Vec<(String, CellColumn<'_>)> = single_columns(data);
-    let arrays = data.point_data.iter().map(|(name, _)| name).chain(on_faces.iter().map(|(name, _)| name));
-    let names = property_names(arrays.map(String::as_str));
-    for (array, name) in names.iter().filter(|(array, name)| *array != name) {
-        writeln!(out, "comment {NAME_COMMENT} {name} {}", unquoted(array))?;
+
+    fn header(&self, out: &mut dyn Write) -> io::Result<()> {
+        let Self { data, on_faces, .. } = self;
+        let tag_type = if self.wide { "double" } else { "int" };
+        writeln!(out, "ply\nformat {} 1.0", if self.binary { "binary_little_endian" } else { "ascii" })?;
+        for name in &data.tag_names {
+            writeln!(out, "comment {}", name.line())?;
+        }
+        let arrays = data.point_data.iter().map(|(name, _)| name).chain(on_faces.iter().map(|(name, _)| name));
+        let names = property_names(arrays.map(String::as_str));
+        for (array, name) in names.iter().filter(|(array, name)| *array != name) {
+            writeln!(out, "comment {NAME_COMMENT} {name} {}", unquoted(array))?;
+        }
+        writeln!(out, "element vertex {}", data.points.len())?;
+        writeln!(out, "property double x\nproperty double y\nproperty double z")?;
+        if data.point_tags.is_some() {
+            writeln!(out, "property {tag_type} tag")?;
+        }
+        for (name, _) in &data.point_data {
+            writeln!(out, "property double {}", names[name.as_str()])?;
+        }
+        let length_type = if self.long { "uint" } else { "uchar" };
+        // `int` is what all readers take; it is enough for 2^31 points.
+        let index_type = if data.points.len() > i32::MAX as usize { "uint" } else { "int" };
+        writeln!(out, "element face {}\nproperty list {length_type} {index_type} vertex_indices", data.face_count())?;
+        if self.face_tags {
+            writeln!(out, "property {tag_type} tag")?;
+        }
+        for (name, _) in on_faces {
+            writeln!(out, "property double {}", names[name.as_str()])?;
+        }
+        writeln!(out, "end_header")
     }
-    writeln!(out, "element vertex {}", data.points.len())?;
-    writeln!(out, "property double x\nproperty double y\nproperty double z")?;
-    if data.point_tags.is_some() {
-        writeln!(out, "property {tag_type} tag")?;
-    }
-    for (name, _) in &data.point_data {
-        writeln!(out, "property double {}", names[name.as_str()])?;
-    }
-    // `int` is what all readers take; it is enough for 2^31 points.
-    let index_type = if data.points.len() > i32::MAX as usize { "uint" } else { "int" };
-    writeln!(out, "element face {}\nproperty list {length_type} {index_type} vertex_indices", data.face_count())?;
-    if cell_tags {
-        writeln!(out, "property {tag_type} tag")?;
-    }
-    for (name, _) in &on_faces {
-        writeln!(out, "property double {}", names[name.as_str()])?;
-    }
-    writeln!(out, "end_header")?;
-    let write_value = |out: &mut dyn Write, value: f64| match binary {
-        true => out.write_all(&value.to_le_bytes()),
-        false => write!(out, " {}", Real(value)),
-    };
-    let write_tag = |out: &mut dyn Write, tag: i64| match (binary, wide) {
-        (false, false) => write!(out, " {tag}"),
-        (false, true) => write!(out, " {}", Real(tag as f64)),
-        (true, false) => out.write_all(&(tag as i32).to_le_bytes()),
-        (true, true) => out.write_all(&(tag as f64).to_le_bytes()),
-    };
-    for (i, point) in data.points.iter().enumerate() {
-        if binary {
-            for x in point {
-                out.write_all(&x.to_le_bytes())?;
+
+    fn points(&self, out: &mut dyn Write) -> io::Result<()> {
+        for (i, point) in self.data.points.iter().enumerate() {
+            if self.binary {
+                for x in point {
+                    out.write_all(&x.to_le_bytes())?;
+                }
+            } else {
+                crate::write::write_point(out, point, " ")?;
             }
-        } else {
-            crate::write::write_point(out, point, " ")?;
+            if let Some(tags) = &self.data.point_tags {
+                self.tag(out, tags[i])?;
+            }
+            for (_, values) in &self.data.point_data {
+                self.value(out, values[i])?;
+            }
+            self.end(out)?;
         }
-        if let Some(tags) = &data.point_tags {
-            write_tag(out, tags[i])?;
-        }
-        for values in &on_points {
-            write_value(out, values[i])?;
-        }
-        if !binary {
-            out.write_all(b"\n")?;
-        }
+        Ok(())
     }
-    let mut face_values: Vec<_> = on_faces.iter().map(|(_, column)| column.faces()).collect();
-    for (face, tag) in data.tagged_faces() {
-        if binary {
-            match longest > 255 {
-                true => out.write_all(&(face.len() as u32).to_le_bytes())?,
-                false => out.write_all(&[face.len() as u8])?,
+
+    fn faces(&self, out: &mut dyn Write) -> io::Result<()> {
+        let mut values: Vec<_> = self.on_faces.iter().map(|(_, column)| column.faces()).collect();
+        for (face, tag) in self.data.tagged_faces() {
+            self.indices(out, face)?;
+            if self.face_tags {
+                self.tag(out, tag)?;
             }
-            for v in face {
-                out.write_all(&v.to_le_bytes())?;
+            for values in &mut values {
+                self.value(out, values.next().unwrap_or(f64::NAN))?;
             }
-        } else {
+            self.end(out)?;
+        }
+        Ok(())
+    }
+
+    /// A face as a list: its length, then its vertices.
+    fn indices(&self, out: &mut dyn Write, face: &[u32]) -> io::Result<()> {
+        if !self.binary {
             write!(out, "{}", face.len())?;
-            write_indices(out, face, 0)?;
+            return write_indices(out, face, 0);
         }
-        if cell_tags {
-            write_tag(out, tag)?;
+        match self.long {
+            true => out.write_all(&(face.len() as u32).to_le_bytes())?,
+            false => out.write_all(&[face.len() as u8])?,
         }
-        for values in &mut face_values {
-            write_value(out, values.next().unwrap_or(f64::NAN))?;
-        }
-        if !binary {
-            out.write_all(b"\n")?;
+        face.iter().try_for_each(|v| out.write_all(&v.to_le_bytes()))
+    }
+
+    fn tag(&self, out: &mut dyn Write, tag: i64) -> io::Result<()> {
+        match (self.binary, self.wide) {
+            (false, false) => write!(out, " {tag}"),
+            (false, true) => write!(out, " {}", Real(tag as f64)),
+            (true, false) => out.write_all(&(tag as i32).to_le_bytes()),
+            (true, true) => out.write_all(&(tag as f64).to_le_bytes()),
         }
     }
-    Ok(())
+
+    fn value(&self, out: &mut dyn Write, value: f64) -> io::Result<()> {
+        match self.binary {
+            true => out.write_all(&value.to_le_bytes()),
+            false => write!(out, " {}", Real(value)),
+        }
+    }
+
+    /// The end of an element: in ASCII every element is one line.
+    fn end(&self, out: &mut dyn Write) -> io::Result<()> {
+        if self.binary { Ok(()) } else { out.write_all(b"\n") }
+    }
 }
 
 /// The arrays on faces, component by component, each with its name.

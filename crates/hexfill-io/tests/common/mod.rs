@@ -6,7 +6,7 @@ use hexfill_io::{Format, MeshData, OtherFace, TagName, TagOn};
 
 /// Two hexes glued along a facet, of different heights and corner numberings, with the ten boundary quads outwards and a
 /// different tag on everything: its mirror image is another mesh.
-pub fn chiral() -> MeshData {
+pub(crate) fn chiral() -> MeshData {
     let points = vec![
         [0.0, 0.0, 0.0],
         [1.0, 0.0, 0.0],
@@ -47,7 +47,7 @@ pub fn chiral() -> MeshData {
 }
 
 /// The chiral mesh with names for its tags, as far as the format has tags: all named, some by several names, one name twice.
-pub fn named_for(format: Format) -> MeshData {
+pub(crate) fn named_for(format: Format) -> MeshData {
     let mut mesh = chiral_for(format);
     // As numbered where names decide: by first appearance, single names first.
     mesh.quad_tags = Some(vec![1, 2, 2, 5, 5, 2, 3, 3, 4, 1]);
@@ -75,7 +75,7 @@ pub fn named_for(format: Format) -> MeshData {
 }
 
 /// The chiral mesh with data, for the formats that hold it.
-pub fn chiral_for(format: Format) -> MeshData {
+pub(crate) fn chiral_for(format: Format) -> MeshData {
     let mut mesh = chiral();
     if format.holds_data() {
         mesh.hex_data = vec![("scaled Jacobian".to_owned(), vec![0.75, -1e-300])];
@@ -94,7 +94,7 @@ pub fn chiral_for(format: Format) -> MeshData {
     without_what_is_not_held(mesh, format)
 }
 
-pub fn without_what_is_not_held(mut mesh: MeshData, format: Format) -> MeshData {
+pub(crate) fn without_what_is_not_held(mut mesh: MeshData, format: Format) -> MeshData {
     if !format.holds_point_tags() {
         mesh.point_tags = None;
         mesh.tag_names.retain(|n| n.on != TagOn::Points);
@@ -114,7 +114,7 @@ pub fn without_what_is_not_held(mut mesh: MeshData, format: Format) -> MeshData 
 }
 
 /// Abaqus knows quads on hexes as faces of these: their first corner is not kept.
-pub fn with_any_first_corner(mut mesh: MeshData, format: Format) -> MeshData {
+pub(crate) fn with_any_first_corner(mut mesh: MeshData, format: Format) -> MeshData {
     if format == Format::Inp {
         mesh.quads.iter_mut().for_each(|q| *q = quad_key(q));
     }
@@ -122,7 +122,7 @@ pub fn with_any_first_corner(mut mesh: MeshData, format: Format) -> MeshData {
 }
 
 /// A mesh with every kind of cell and face.
-pub fn mixed() -> MeshData {
+pub(crate) fn mixed() -> MeshData {
     let mut mesh = chiral();
     mesh.points.extend([[0.5, 0.5, 3.0], [5.0, 5.0, 5.0], [0.5, 2.0, 0.5]]);
     mesh.point_tags = None;
@@ -138,7 +138,7 @@ pub fn mixed() -> MeshData {
 }
 
 /// Equality to the bit, notes aside.
-pub fn assert_same(found: &MeshData, due: &MeshData, what: &str) {
+pub(crate) fn assert_same(found: &MeshData, due: &MeshData, what: &str) {
     let bits = |m: &MeshData| -> Vec<[u64; 3]> { m.points.iter().map(|p| p.map(f64::to_bits)).collect() };
     assert_eq!(bits(found), bits(due), "points of {what}");
     let data_bits = |data: &[(String, Vec<f64>)]| -> Vec<(String, Vec<u64>)> {
@@ -165,7 +165,7 @@ fn hex_key(hex: &[u32; 8]) -> [u32; 8] {
     rotations.iter().map(|s| s.map(|i| hex[i])).min().unwrap()
 }
 
-pub fn quad_key(quad: &[u32; 4]) -> [u32; 4] {
+pub(crate) fn quad_key(quad: &[u32; 4]) -> [u32; 4] {
     let mut quad = *quad;
     let start = (0..4).min_by_key(|&k| quad[k]).unwrap();
     quad.rotate_left(start);
@@ -179,7 +179,7 @@ fn sorted<T: Ord>(items: impl Iterator<Item = T>) -> Vec<T> {
 }
 
 /// Compares node sets, connectivity with orientation, and tags, after matching the points by position.
-pub fn compare(found: &MeshData, due: &MeshData, exact: bool, tags: bool, what: &str) {
+pub(crate) fn compare(found: &MeshData, due: &MeshData, exact: bool, tags: bool, what: &str) {
     assert_eq!(found.points.len(), due.points.len(), "{what}");
     let tolerance = if exact { 0.0 } else { 1e-5 };
     let map: Vec<u32> = found
@@ -213,7 +213,7 @@ pub fn compare(found: &MeshData, due: &MeshData, exact: bool, tags: bool, what: 
 
 /// Reads the files of a list and compares them with the chiral mesh. A line is: name, `exact` or `single` precision,
 /// `tags` or `notags`, and what is in it: `quads`, `hexes` or `both`.
-pub fn compare_list(directory: &std::path::Path, list: &str) -> usize {
+pub(crate) fn compare_list(directory: &std::path::Path, list: &str) -> usize {
     let mesh = chiral();
     let mut count = 0;
     for line in list.lines().filter(|l| !l.starts_with('#')) {

@@ -18,7 +18,7 @@ fn boundary(mesh: &HexMesh, origin: Option<&[Option<VertexId>]>) -> BTreeSet<[u3
 
 /// Proper, no larger, the boundary and the kind of space kept.
 #[track_caller]
-pub fn assert_sound(before: &HexMesh, made: &Simplified) {
+pub(crate) fn assert_sound(before: &HexMesh, made: &Simplified) {
     made.mesh.debug_check();
     assert_eq!(made.origin.len(), made.mesh.n_vertices());
     assert_eq!(boundary(before, None), boundary(&made.mesh, Some(&made.origin)));
@@ -36,7 +36,7 @@ pub fn assert_sound(before: &HexMesh, made: &Simplified) {
 
 /// The mesh with a layer of hexes put between `inside` and the rest, or round the whole mesh if all are inside.
 /// The hexes outside and the boundary keep their vertices; the pillowed hexes get copies.
-pub fn pillowed(mesh: &HexMesh, inside: impl Fn(usize) -> bool) -> HexMesh {
+pub(crate) fn pillowed(mesh: &HexMesh, inside: impl Fn(usize) -> bool) -> HexMesh {
     let n = mesh.n_vertices() as u32;
     let mut rim = Vec::new();
     for f in mesh.facets().filter(|f| inside(f.hex().index())) {

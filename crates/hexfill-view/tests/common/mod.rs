@@ -6,13 +6,13 @@ use hexfill_mesh::cube::{CORNER_NEIGHBOURS, FACETS};
 use hexfill_mesh::{HexId, HexMesh};
 
 /// Connectivity with positions.
-pub struct Shape {
+pub(crate) struct Shape {
     pub mesh: HexMesh,
     pub points: Vec<[f64; 3]>,
 }
 
 /// `nx` by `ny` by `nz` unit cubes.
-pub fn grid(nx: usize, ny: usize, nz: usize) -> Shape {
+pub(crate) fn grid(nx: usize, ny: usize, nz: usize) -> Shape {
     let id = |x: usize, y: usize, z: usize| (x + (nx + 1) * (y + (ny + 1) * z)) as u32;
     let mut points = Vec::new();
     let mut hexes = Vec::new();
@@ -33,7 +33,7 @@ pub fn grid(nx: usize, ny: usize, nz: usize) -> Shape {
 }
 
 /// A ball: a core of `k`^3 cubes in `layers` layers of hexes that bend it round; its core has singular edges of valence 3.
-pub fn ball(k: usize, layers: usize) -> Shape {
+pub(crate) fn ball(k: usize, layers: usize) -> Shape {
     let core = grid(k, k, k);
     let half = k as f64 / 2.0;
     let mut points: Vec<[f64; 3]> = core.points.iter().map(|p| p.map(|c| 0.5 * (c - half) / half)).collect();
@@ -69,7 +69,7 @@ pub fn ball(k: usize, layers: usize) -> Shape {
 }
 
 /// A refinement transition (9 quads to 1) of 13 hexes, from joneuhauser/hex-templates F9-1-H13 (MIT); the positions are made up.
-pub fn refinement() -> Shape {
+pub(crate) fn refinement() -> Shape {
     let mesh = HexMesh::try_new(32, &REFINEMENT).unwrap();
     let points = made_up_positions(&mesh);
     Shape { mesh, points }
@@ -93,7 +93,7 @@ const REFINEMENT: [[u32; 8]; 13] = [
 
 /// Positions for a ball: the boundary drawn flat by Tutte's method round its first quad and wrapped on a sphere, inner
 /// vertices in the middle of their neighbours.
-pub fn made_up_positions(mesh: &HexMesh) -> Vec<[f64; 3]> {
+pub(crate) fn made_up_positions(mesh: &HexMesh) -> Vec<[f64; 3]> {
     let quads = mesh.boundary_quads();
     let n = mesh.n_vertices();
     let mut around = vec![Vec::new(); n];
@@ -137,7 +137,7 @@ pub fn made_up_positions(mesh: &HexMesh) -> Vec<[f64; 3]> {
 }
 
 /// Least corner determinant over the lengths of its edges, one a hex.
-pub fn scaled_jacobian(shape: &Shape) -> Vec<f64> {
+pub(crate) fn scaled_jacobian(shape: &Shape) -> Vec<f64> {
     let corner = |hex: &[hexfill_mesh::VertexId; 8], i: usize| {
         let o = shape.points[hex[i].index()];
         let e = CORNER_NEIGHBOURS[i].map(|k| {
@@ -153,7 +153,7 @@ pub fn scaled_jacobian(shape: &Shape) -> Vec<f64> {
 }
 
 /// An order in which every hex but the first shares a facet with an earlier one.
-pub fn facet_order(mesh: &HexMesh) -> Vec<HexId> {
+pub(crate) fn facet_order(mesh: &HexMesh) -> Vec<HexId> {
     let mut order = vec![HexId(0)];
     let mut seen = vec![false; mesh.n_hexes()];
     seen[0] = true;

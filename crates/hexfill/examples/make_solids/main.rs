@@ -15,8 +15,8 @@ mod spheres;
 mod voxels;
 
 use hexfill::Context;
-use hexfill::check::{Judged, Level, Options, judge};
 use hexfill::io::{MeshData, write_path};
+use hexfill::unstable::check::{Judged, Level, Options, judge};
 use serde_json::{Map, Value, json};
 use solid::Solid;
 use std::error::Error;

@@ -17,7 +17,7 @@ fn mean<'a>(points: impl Iterator<Item = &'a Point>) -> Point {
 
 /// One step of Catmull and Clark ("Recursively generated B-spline surfaces on arbitrary topological meshes", 1978): a closed
 /// surface of polygons becomes one quad per corner, the old vertices keeping their numbers.
-pub fn catmull_clark(points: &[Point], polygons: &[Vec<u32>]) -> Surface {
+pub(crate) fn catmull_clark(points: &[Point], polygons: &[Vec<u32>]) -> Surface {
     let n = points.len();
     let edges_of = |p: &[u32]| (0..p.len()).map(|i| (p[i], p[(i + 1) % p.len()])).collect::<Vec<_>>();
     let centres: Vec<Point> = polygons.iter().map(|p| mean(p.iter().map(|&v| &points[v as usize]))).collect();
@@ -58,13 +58,13 @@ pub fn catmull_clark(points: &[Point], polygons: &[Vec<u32>]) -> Surface {
 }
 
 /// The same for quads.
-pub fn catmull_clark_quads((points, quads): &Surface) -> Surface {
+pub(crate) fn catmull_clark_quads((points, quads): &Surface) -> Surface {
     catmull_clark(points, &quads.iter().map(|q| q.to_vec()).collect::<Vec<_>>())
 }
 
 /// A sphere of mostly quads, with some triangles and pentagons, as polygons: neighbouring triangles of the hull of the points
 /// joined at random. Every vertex keeps three edges. Refined, its chords cross themselves, as artists' surfaces' do.
-pub fn mixed(points: &[Point], seed: u64) -> Vec<Vec<u32>> {
+pub(crate) fn mixed(points: &[Point], seed: u64) -> Vec<Vec<u32>> {
     let mut polygons: Vec<Vec<u32>> = hull(points).into_iter().map(|t| t.to_vec()).collect();
     let mut random = Random::new(seed);
     let mut degree = vec![0u32; points.len()];

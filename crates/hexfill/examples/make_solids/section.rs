@@ -4,7 +4,7 @@ use crate::solid::Welder;
 use std::f64::consts::PI;
 
 /// A plane quad mesh.
-pub struct Section {
+pub(crate) struct Section {
     /// Positions.
     pub points: Vec<[f64; 2]>,
     /// Corners of each quad, counter-clockwise.
@@ -18,12 +18,12 @@ type Map<'a> = &'a dyn Fn([f64; 2]) -> [f64; 2];
 type Patch<'a> = ([usize; 2], Map<'a>);
 
 /// The point of the unit disk for a point of the square [-1, 1]^2 (elliptical grid mapping); squares become ellipses.
-pub fn disk([x, y]: [f64; 2]) -> [f64; 2] {
+pub(crate) fn disk([x, y]: [f64; 2]) -> [f64; 2] {
     [x * (1.0 - y * y / 2.0).sqrt(), y * (1.0 - x * x / 2.0).sqrt()]
 }
 
 /// Between two points.
-pub fn between<const N: usize>(a: [f64; N], b: [f64; N], t: f64) -> [f64; N] {
+pub(crate) fn between<const N: usize>(a: [f64; N], b: [f64; N], t: f64) -> [f64; N] {
     std::array::from_fn(|k| a[k] + t * (b[k] - a[k]))
 }
 
@@ -45,19 +45,19 @@ impl Section {
     }
 
     /// A rectangle about the origin.
-    pub fn rectangle(n: [usize; 2], size: [f64; 2]) -> Self {
+    pub(crate) fn rectangle(n: [usize; 2], size: [f64; 2]) -> Self {
         Self::patches(&[(n, &|p| [0, 1].map(|k| size[k] * (p[k] - 0.5)))])
     }
 
     /// Unit cells of a grid given by their lowest corners.
-    pub fn cells(cells: &[[i32; 2]]) -> Self {
+    pub(crate) fn cells(cells: &[[i32; 2]]) -> Self {
         let maps: Vec<_> = cells.iter().map(|&c| move |p: [f64; 2]| [0, 1].map(|k| f64::from(c[k]) + p[k])).collect();
         let patches: Vec<Patch<'_>> = maps.iter().map(|map| ([1, 1], map as Map<'_>)).collect();
         Self::patches(&patches)
     }
 
     /// A convex polygon cut into one patch of `n * n` quads a corner, which meet at the centre.
-    pub fn polygon(corners: &[[f64; 2]], n: usize) -> Self {
+    pub(crate) fn polygon(corners: &[[f64; 2]], n: usize) -> Self {
         let k = corners.len();
         let centre = [0, 1].map(|i| corners.iter().map(|c| c[i]).sum::<f64>() / k as f64);
         let maps: Vec<_> = (0..k)
@@ -72,18 +72,18 @@ impl Section {
     }
 
     /// A regular polygon with radius 1, as [`polygon`](Self::polygon).
-    pub fn regular(k: usize, n: usize) -> Self {
+    pub(crate) fn regular(k: usize, n: usize) -> Self {
         let corners: Vec<_> = (0..k).map(|i| unit(2.0 * PI * i as f64 / k as f64)).collect();
         Self::polygon(&corners, n)
     }
 
     /// The unit disk: a core of `core * core` quads and `rings` rings round it, listed from inside out.
-    pub fn o_grid(core: usize, rings: usize) -> Self {
+    pub(crate) fn o_grid(core: usize, rings: usize) -> Self {
         Self::o_grid_part(core, rings, false)
     }
 
     /// The upper half of the unit disk: a core of `2 * core` by `core` quads and `rings` rings.
-    pub fn half_o_grid(core: usize, rings: usize) -> Self {
+    pub(crate) fn half_o_grid(core: usize, rings: usize) -> Self {
         Self::o_grid_part(core, rings, true)
     }
 
@@ -116,13 +116,13 @@ impl Section {
     }
 
     /// A ring between two radii.
-    pub fn annulus(around: usize, rings: usize, radii: [f64; 2]) -> Self {
+    pub(crate) fn annulus(around: usize, rings: usize, radii: [f64; 2]) -> Self {
         let map = |[u, v]: [f64; 2]| unit(2.0 * PI * v).map(|x| x * (radii[0] + u * (radii[1] - radii[0])));
         Self::patches(&[([rings, around], &map)])
     }
 
     /// The square [-1, 1]^2 with a round hole: `n` quads a side, `rings` rings.
-    pub fn square_with_round_hole(n: usize, rings: usize, radius: f64) -> Self {
+    pub(crate) fn square_with_round_hole(n: usize, rings: usize, radius: f64) -> Self {
         let maps: Vec<_> = (0..4)
             .map(|at| {
                 move |[u, v]: [f64; 2]| {
@@ -141,6 +141,6 @@ impl Section {
 }
 
 /// The point of the unit circle at an angle.
-pub fn unit(angle: f64) -> [f64; 2] {
+pub(crate) fn unit(angle: f64) -> [f64; 2] {
     [angle.cos(), angle.sin()]
 }

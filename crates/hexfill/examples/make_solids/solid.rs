@@ -5,17 +5,17 @@ use hexfill_mesh::cube::{FACETS, POSITIONS};
 use std::collections::{BTreeMap, HashMap};
 
 /// A point of space.
-pub type Point = [f64; 3];
+pub(crate) type Point = [f64; 3];
 
 /// A map of space.
-pub type Map<'a> = &'a dyn Fn(Point) -> Point;
+pub(crate) type Map<'a> = &'a dyn Fn(Point) -> Point;
 
 /// Points closer than this are one vertex; the solids have sizes of 0.01 to 30.
 const SAME: f64 = 1e-6;
 
 /// Gives points numbers, equal points equal ones.
 #[derive(Default)]
-pub struct Welder {
+pub(crate) struct Welder {
     /// The points by number.
     pub points: Vec<Point>,
     cells: HashMap<[i64; 3], Vec<u32>>,
@@ -23,7 +23,7 @@ pub struct Welder {
 
 impl Welder {
     /// The number of a point.
-    pub fn id(&mut self, p: Point) -> u32 {
+    pub(crate) fn id(&mut self, p: Point) -> u32 {
         let cell = p.map(|x| (x / (4.0 * SAME)).floor() as i64);
         // A point near the wall of its cell may have been met on the other side.
         for i in 0..27 {
@@ -45,7 +45,7 @@ impl Welder {
 }
 
 /// A hex mesh. The vertices of its boundary come first, in the order of [`boundary`](Self::boundary).
-pub struct Solid {
+pub(crate) struct Solid {
     /// Positions.
     pub points: Vec<Point>,
     /// Corners in VTK order, positively oriented.
@@ -54,7 +54,7 @@ pub struct Solid {
 
 impl Solid {
     /// Blocks of `n[0] * n[1] * n[2]` hexes, each the image of the unit cube under its map, welded where they meet.
-    pub fn blocks(blocks: &[([usize; 3], Map<'_>)]) -> Self {
+    pub(crate) fn blocks(blocks: &[([usize; 3], Map<'_>)]) -> Self {
         let mut welder = Welder::default();
         let mut hexes = Vec::new();
         for (n, map) in blocks {
@@ -70,7 +70,7 @@ impl Solid {
     }
 
     /// The cells of a grid, given by their lowest corners, under a map.
-    pub fn voxels(cells: &[[i32; 3]], map: Map<'_>) -> Self {
+    pub(crate) fn voxels(cells: &[[i32; 3]], map: Map<'_>) -> Self {
         let mut ids = BTreeMap::new();
         let mut points = Vec::new();
         let corner = |cell: &[i32; 3], p: [u8; 3]| [0, 1, 2].map(|k| cell[k] + i32::from(p[k]));
@@ -89,7 +89,7 @@ impl Solid {
 
     /// A section swept through `layers` layers; `map` takes a point of the section and the height (0 to 1). The layer of a quad
     /// is left out where `filled` (quad, layer) says so. If the ends meet, they are welded.
-    pub fn swept(
+    pub(crate) fn swept(
         section: &Section,
         layers: usize,
         filled: impl Fn(usize, usize) -> bool,
@@ -110,7 +110,7 @@ impl Solid {
 
     /// The same mesh, moved.
     #[must_use]
-    pub fn mapped(self, map: impl Fn(Point) -> Point) -> Self {
+    pub(crate) fn mapped(self, map: impl Fn(Point) -> Point) -> Self {
         Self { points: self.points.into_iter().map(map).collect(), ..self }.settled()
     }
 
@@ -150,7 +150,7 @@ impl Solid {
     }
 
     /// The quads in one hex, seen from outside.
-    pub fn boundary(&self) -> Vec<[u32; 4]> {
+    pub(crate) fn boundary(&self) -> Vec<[u32; 4]> {
         let mut open: HashMap<[u32; 4], u32> = HashMap::new();
         let facets = || self.hexes.iter().flat_map(|h| FACETS.map(|f| f.map(|i| h[i])));
         let sorted = |mut q: [u32; 4]| {
@@ -164,7 +164,7 @@ impl Solid {
     }
 
     /// The boundary with its points, which are the first of the mesh.
-    pub fn surface(&self) -> (Vec<Point>, Vec<[u32; 4]>) {
+    pub(crate) fn surface(&self) -> (Vec<Point>, Vec<[u32; 4]>) {
         let quads = self.boundary();
         let n = quads.iter().flatten().max().map_or(0, |&v| v as usize + 1);
         (self.points[..n].to_vec(), quads)

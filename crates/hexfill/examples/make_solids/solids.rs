@@ -5,13 +5,13 @@ use crate::solid::{Map, Point, Solid};
 use std::f64::consts::PI;
 
 /// The point of the unit ball for a point of the cube [-1, 1]^3; the cube's faces go to the sphere.
-pub fn ball([x, y, z]: Point) -> Point {
+pub(crate) fn ball([x, y, z]: Point) -> Point {
     let on = |a: f64, b: f64, c: f64| a * (1.0 - b * b / 2.0 - c * c / 2.0 + b * b * c * c / 3.0).sqrt();
     [on(x, y, z), on(y, z, x), on(z, x, y)]
 }
 
 /// A ball: a core of `n^3` hexes and `layers` layers of `6 n^2`; of the upper half only, if wanted (then `n` is even).
-pub fn o_grid_ball(n: usize, layers: usize, upper_half: bool) -> Solid {
+pub(crate) fn o_grid_ball(n: usize, layers: usize, upper_half: bool) -> Solid {
     let core = |p: Point| between(p, ball(p), 0.5).map(|x| 0.55 * x);
     let low = if upper_half { 0.0 } else { -1.0 };
     let height = if upper_half { n / 2 } else { n };
@@ -40,7 +40,7 @@ pub fn o_grid_ball(n: usize, layers: usize, upper_half: bool) -> Solid {
 }
 
 /// The shell between two spheres: `layers` layers of `6 n^2` hexes.
-pub fn hollow_ball(n: usize, layers: usize, inner_radius: f64) -> Solid {
+pub(crate) fn hollow_ball(n: usize, layers: usize, inner_radius: f64) -> Solid {
     let face = |axis: usize, sign: f64| {
         move |[u, v, t]: Point| {
             let mut p = [sign; 3];
@@ -75,7 +75,7 @@ fn deformed([x, y, z]: Point) -> Point {
 }
 
 /// All solids by name. A table, a line or two each: it is read by looking up, so it stays in one piece.
-pub fn all() -> Vec<(&'static str, Solid)> {
+pub(crate) fn all() -> Vec<(&'static str, Solid)> {
     let square = |n: usize, a: f64| Section::rectangle([n, n], [a, a]);
     let l_cells: Vec<[i32; 2]> = (0..36).map(|i| [i % 6, i / 6]).filter(|&[x, y]| x < 2 || y < 2).collect();
     let t_cells: Vec<[i32; 2]> =

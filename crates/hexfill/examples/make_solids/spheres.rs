@@ -6,10 +6,10 @@ use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
 /// A quad surface with positions.
-pub type Surface = (Vec<Point>, Vec<[u32; 4]>);
+pub(crate) type Surface = (Vec<Point>, Vec<[u32; 4]>);
 
 /// Random points of the unit sphere, uniform.
-pub fn random_points(n: usize, seed: u64) -> Vec<Point> {
+pub(crate) fn random_points(n: usize, seed: u64) -> Vec<Point> {
     let mut random = Random::new(seed);
     let mut point = || -> Point {
         let z: f64 = 2.0 * random.unit() - 1.0;
@@ -21,7 +21,7 @@ pub fn random_points(n: usize, seed: u64) -> Vec<Point> {
 }
 
 /// Points of the unit sphere spread evenly along a spiral.
-pub fn even_points(n: usize) -> Vec<Point> {
+pub(crate) fn even_points(n: usize) -> Vec<Point> {
     let golden = PI * (3.0 - 5f64.sqrt());
     let point = |i: usize| {
         let z: f64 = 1.0 - (2 * i + 1) as f64 / n as f64;
@@ -40,7 +40,7 @@ fn side([a, b, c]: [Point; 3], d: Point) -> f64 {
 
 /// The triangles of the convex hull, seen from outside counter-clockwise: one point after the other replaces what it sees.
 /// For points in general position on a sphere; quadratic time.
-pub fn hull(points: &[Point]) -> Vec<[u32; 3]> {
+pub(crate) fn hull(points: &[Point]) -> Vec<[u32; 3]> {
     let at = |t: [u32; 3]| t.map(|v| points[v as usize]);
     let first = if side(at([0, 1, 2]), points[3]) > 0.0 { [0, 1, 2] } else { [0, 2, 1] };
     let [a, b, c] = first;
@@ -67,7 +67,7 @@ fn middle(points: &[Point], of: &[u32]) -> Point {
 }
 
 /// Every triangle cut into three quads at its centre and the middles of its edges. Its chords are simple.
-pub fn cut_triangles(points: &[Point]) -> Surface {
+pub(crate) fn cut_triangles(points: &[Point]) -> Surface {
     let mut out = points.to_vec();
     let mut middles = BTreeMap::new();
     let mut quads = Vec::new();
@@ -88,7 +88,7 @@ pub fn cut_triangles(points: &[Point]) -> Surface {
 
 /// The radial graph: vertices and triangles of a triangulation as vertices, one quad an edge. Its chords cross themselves
 /// heavily, and it is 3-connected.
-pub fn radial(points: &[Point]) -> Surface {
+pub(crate) fn radial(points: &[Point]) -> Surface {
     let triangles = hull(points);
     let mut out = points.to_vec();
     out.extend(triangles.iter().map(|t| middle(points, t)));

@@ -10,7 +10,7 @@ const DIRECTIONS: [[i32; 3]; 6] = [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0],
 type Cells = BTreeSet<[i32; 3]>;
 
 /// The cells at their integer positions.
-pub fn solid(cells: &Cells) -> Solid {
+pub(crate) fn solid(cells: &Cells) -> Solid {
     Solid::voxels(&cells.iter().copied().collect::<Vec<_>>(), &|p| p)
 }
 
@@ -30,7 +30,7 @@ fn surface(cells: &Cells) -> Option<QuadSurface> {
 }
 
 /// A random solid of genus 0 with `n` cells: grown from one cell, only spheres on the way.
-pub fn sphere(n: usize, seed: u64) -> Cells {
+pub(crate) fn sphere(n: usize, seed: u64) -> Cells {
     let mut random = Random::new(seed);
     let mut cells = Cells::from([[0; 3]]);
     // Not every number can be reached from every shape: a bound on the tries keeps it finite.
@@ -50,7 +50,13 @@ pub fn sphere(n: usize, seed: u64) -> Cells {
 
 /// A block with straight tunnels (two may cross), cavities of one cell and random dents; manifold all the way, though a tunnel
 /// or cavity may be cut open by a dent. Returns the genus and the number of boundary components as well.
-pub fn with_holes(size: [i32; 3], tunnels: usize, cavities: usize, dents: usize, seed: u64) -> (Cells, u64, usize) {
+pub(crate) fn with_holes(
+    size: [i32; 3],
+    tunnels: usize,
+    cavities: usize,
+    dents: usize,
+    seed: u64,
+) -> (Cells, u64, usize) {
     let mut random = Random::new(seed);
     let [x, y, z] = size;
     let mut cells: Cells = (0..x * y * z).map(|i| [i % x, i / x % y, i / x / y]).collect();

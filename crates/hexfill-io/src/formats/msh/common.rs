@@ -1,17 +1,11 @@
-//! What versions 2.2 and 4.1 share: header, element types, node numbers, data sections.
+//! What versions 2.2 and 4.1 share: element types, node numbers, sections that are read alike.
 
-use super::{v2, v4};
-use crate::arrays::{self, CellColumn, component};
 use crate::assembly::{Assembly, Slot, Values};
-use crate::data::{MeshData, TagOn};
-use crate::error::{ReadError, snippet};
-use crate::format::Format;
-use crate::groups::{Combination, Groups, NONE, carried};
+use crate::data::MeshData;
+use crate::error::ReadError;
+use crate::groups::{Combination, Groups, NONE};
 use crate::source::{Source, Span};
-use crate::write::{Real, unquoted};
 use rustc_hash::{FxHashMap, FxHashSet};
-use std::collections::BTreeMap;
-use std::io::{self, Write};
 
 /// Numbers of nodes of Gmsh's element types 1 to 31 (0: no such type here).
 const NODES: [usize; 32] =
@@ -23,6 +17,9 @@ pub(crate) const TET: i64 = 4;
 pub(crate) const HEX: i64 = 5;
 pub(crate) const WEDGE: i64 = 6;
 pub(crate) const PYRAMID: i64 = 7;
+
+/// Name of the physical group of what has no tag, where all must have one.
+pub(crate) const UNTAGGED: &str = "untagged";
 
 /// Number of nodes of an element type, if it is known.
 pub(crate) fn nodes_of(element_type: i64) -> Option<usize> {
@@ -98,98 +95,6 @@ pub(crate) struct Reader<'r> {
     pub(crate) has_elements: bool,
 }
 
-pub(crate) fn read(mut s: Source<'_>) -> Result<MeshData, ReadError> {
-    let asked = s.format();
-    // Comments may come before the header.
-    loop {
-        if !s.next_full_line()? {
-            return Err(s.empty());
-        }
-        let line = s.line().trim_ascii();
-        if line == b"$MeshFormat" {
-            break;
-        }
-        if line == b"$Comments" {
-            skip(&mut s, "Comments")?;
-            continue;
-        }
-        if line == b"$NOD" {
-            return Err(s.unsupported("Gmsh MSH 1", "save it as version 2.2 or 4.1 (gmsh -save -format msh22)"));
-        }
-        if line.starts_with(b"(") {
-            let remedy = "save it as Gmsh 2.2 or 4.1 (`gmsh:` formats), VTK or MEDIT";
-            return Err(s.unsupported("an ANSYS/Fluent .msh (this is not a Gmsh file)", remedy));
-        }
-        let given = snippet(line);
-        return Err(s.malformed_text(
-            "`$MeshFormat`",
-            given,
-            "is this a Gmsh file? name the format if the extension is wrong",
-        ));
-    }
-    if !s.next_full_line()? {
-        return Err(s.truncated("the version"));
-    }
-    let span = s.need_word("the version")?;
-    let version = s.string(span);
-    let span = s.need_word("0 (ASCII) or 1 (binary)")?;
-    let is_binary = s.integer(span, "the file type")? != 0;
-    let v4 = match version.as_str() {
-        "2" | "2.0" | "2.1" | "2.2" => false,
-        "4.1" => true,
-        _ => {
-            let remedy = "save it as version 2.2 or 4.1 (gmsh -save -format msh41)";
-            return Err(s.unsupported(format!("Gmsh MSH {}", snippet(version.as_bytes())), remedy));
-        }
-    };
-    let format = if v4 { Format::Msh41 } else { Format::Msh22 };
-    s.set_format(format);
-    let mut binary = None;
-    if is_binary {
-        let mut one = [0; 4];
-        s.exact(&mut one, "the number 1 that shows the byte order")?;
-        binary = Some(match (u32::from_le_bytes(one), u32::from_be_bytes(one)) {
-            (1, _) => false,
-            (_, 1) => true,
-            _ => return Err(s.malformed_text("the number 1 in binary", "another".to_owned(), "the file is damaged")),
-        });
-    }
-    let mut reader = Reader {
-        s,
-        out: Assembly::default(),
-        nodes: Numbers::default(),
-        elements: Numbers::default(),
-        slots: Vec::new(),
-        entities: Vec::new(),
-        groups: Default::default(),
-        combinations: Vec::new(),
-        untagged: FxHashSet::default(),
-        binary,
-        has_nodes: false,
-        has_elements: false,
-    };
-    let flavour = if is_binary { "binary" } else { "ASCII" };
-    reader.out.note(format!("read as {} ({flavour}), not ANSYS/Fluent", format.title()));
-    if asked != format && asked != Format::Msh22 {
-        reader.out.note(format!("{} was asked for, but the file says version {version}", asked.title()));
-    }
-    reader.close("MeshFormat")?;
-    if v4 {
-        v4::sections(&mut reader)?
-    } else {
-        v2::sections(&mut reader)?
-    }
-    if !reader.has_nodes {
-        return Err(reader.s.truncated("a section $Nodes"));
-    }
-    if !reader.has_elements {
-        return Err(reader.s.truncated("a section $Elements"));
-    }
-    reader.groups_as_tags();
-    reader.entities_as_tags();
-    Ok(reader.out.finish())
-}
-
 /// Skips to the end of a section.
 pub(crate) fn skip(s: &mut Source<'_>, name: &str) -> Result<(), ReadError> {
     let end = format!("$End{name}");
@@ -199,6 +104,26 @@ pub(crate) fn skip(s: &mut Source<'_>, name: &str) -> Result<(), ReadError> {
         }
     }
     Err(s.truncated(format!("`{end}`")))
+}
+
+impl<'r> Reader<'r> {
+    /// Behind the header.
+    pub(crate) fn new(s: Source<'r>, binary: Option<bool>) -> Self {
+        Self {
+            s,
+            out: Assembly::default(),
+            nodes: Numbers::default(),
+            elements: Numbers::default(),
+            slots: Vec::new(),
+            entities: Vec::new(),
+            groups: Default::default(),
+            combinations: Vec::new(),
+            untagged: FxHashSet::default(),
+            binary,
+            has_nodes: false,
+            has_elements: false,
+        }
+    }
 }
 
 impl Reader<'_> {
@@ -327,7 +252,7 @@ impl Reader<'_> {
     }
 
     /// Faces and hexes get the tags of their groups.
-    fn groups_as_tags(&mut self) {
+    pub(crate) fn groups_as_tags(&mut self) {
         for (k, groups) in std::mem::take(&mut self.groups).iter().enumerate() {
             let of_kind = |slot: Slot| matches!(slot, Slot::Hex(_)) == (k == 1);
             let combinations: Vec<Combination> = self
@@ -374,7 +299,7 @@ impl Reader<'_> {
     }
 
     /// Where no element has a physical group, entities are the tags, if faces or hexes have several.
-    fn entities_as_tags(&mut self) {
+    pub(crate) fn entities_as_tags(&mut self) {
         if self.slots.iter().any(|&slot| self.out.tag(slot) != 0) {
             return;
         }
@@ -517,190 +442,4 @@ pub(crate) fn dimension(element_type: i64) -> u8 {
         TRIANGLE | QUAD => 2,
         _ => 3,
     }
-}
-
-/// Name of the physical group of what has no tag, where all must have one.
-const UNTAGGED: &str = "untagged";
-
-/// The physical groups of a mesh, per dimension and tag.
-pub(crate) struct Physical {
-    /// Numbers of the groups of each tag.
-    numbers: BTreeMap<(u8, i64), Vec<i64>>,
-    /// Names of groups.
-    names: BTreeMap<(u8, i64), String>,
-}
-
-impl Physical {
-    /// A tag is a group of its number; a tag with several names is in a group for each of them, if `overlap` is possible,
-    /// otherwise its group has all the names. With `everywhere` what has no tag is in a group, too, where others have one:
-    /// meshio reads no mesh whose elements are partly in groups.
-    pub(crate) fn new(data: &MeshData, overlap: bool, everywhere: bool) -> Self {
-        let tags: std::collections::BTreeSet<(u8, i64)> =
-            elements(data).map(|(t, _, tag)| (dimension(t), tag)).collect();
-        let mut physical = Self { numbers: BTreeMap::new(), names: BTreeMap::new() };
-        // The group of a name is the tag that has no other name.
-        let mut group_of: BTreeMap<(u8, &str), i64> = BTreeMap::new();
-        let all_names = data.names_by_tag();
-        let named = |dim: u8, tag: i64| {
-            let on = if dim == 2 { TagOn::Faces } else { TagOn::Cells };
-            all_names.get(&(on, tag)).into_iter().flatten().copied()
-        };
-        for &(dim, tag) in &tags {
-            let names: Vec<&str> = named(dim, tag).collect();
-            if let [name] = names[..]
-                && carried(name).is_none()
-            {
-                group_of.entry((dim, name)).or_insert(tag);
-            }
-            if !names.is_empty() && (names.len() == 1 || !overlap) {
-                physical.names.insert((dim, tag), names.join("+"));
-            }
-        }
-        let mut next = tags.iter().map(|&(_, tag)| tag).max().unwrap_or(0).max(0);
-        let mut fresh = || {
-            next += 1;
-            next
-        };
-        for &(dim, tag) in tags.iter().filter(|(_, tag)| *tag != 0) {
-            let names: Vec<&str> = named(dim, tag).collect();
-            let mut numbers = Vec::new();
-            // The number of the tag itself goes to the first name that has no other.
-            let mut own = Some(tag);
-            for name in names.into_iter().filter(|_| overlap) {
-                let number = || own.take().unwrap_or_else(&mut fresh);
-                numbers.push(carried(name).unwrap_or_else(|| *group_of.entry((dim, name)).or_insert_with(number)));
-            }
-            if numbers.is_empty() {
-                numbers.push(tag);
-            }
-            physical.numbers.insert((dim, tag), numbers);
-        }
-        for ((dim, name), number) in group_of {
-            physical.names.entry((dim, number)).or_insert_with(|| name.to_owned());
-        }
-        if everywhere && tags.iter().any(|&(_, tag)| tag != 0) {
-            for &(dim, _) in tags.iter().filter(|(_, tag)| *tag == 0) {
-                let number = fresh();
-                physical.numbers.insert((dim, 0), vec![number]);
-                physical.names.insert((dim, number), UNTAGGED.to_owned());
-            }
-        }
-        physical
-    }
-
-    /// The groups of a tag.
-    pub(crate) fn of(&self, dim: u8, tag: i64) -> &[i64] {
-        self.numbers.get(&(dim, tag)).map_or(&[], Vec::as_slice)
-    }
-
-    /// The section with the names.
-    pub(crate) fn write_names(&self, out: &mut dyn Write) -> io::Result<()> {
-        if self.names.is_empty() {
-            return Ok(());
-        }
-        writeln!(out, "$PhysicalNames\n{}", self.names.len())?;
-        for ((dim, number), name) in &self.names {
-            writeln!(out, "{dim} {number} \"{}\"", unquoted(name))?;
-        }
-        writeln!(out, "$EndPhysicalNames")
-    }
-}
-
-/// How numbers on elements are written.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Layout {
-    /// One value for each element of the mesh.
-    Elements,
-    /// One value for each node of the elements that have any. meshio 5.3.5 passes this over; it reads no file of version 2.2 with
-    /// `$ElementData` if there are several kinds of elements.
-    NodesOfElements,
-}
-
-/// The data sections at the end of a file.
-pub(crate) fn write_data(out: &mut dyn Write, data: &MeshData, several_kinds: Layout) -> io::Result<()> {
-    if let Some(tags) = &data.point_tags {
-        let values: Vec<f64> = tags.iter().map(|&t| t as f64).collect();
-        write_on_points(out, "tag", &[&values])?;
-    }
-    for (name, columns) in arrays::on_points(data) {
-        for (name, columns) in as_gmsh_has_them(name, columns) {
-            write_on_points(out, &name, &columns)?;
-        }
-    }
-    let mut types = elements(data).map(|(element_type, ..)| element_type);
-    let first = types.next();
-    let layout = if types.all(|t| Some(t) == first) { Layout::Elements } else { several_kinds };
-    for (name, columns) in arrays::on_cells(data) {
-        for (name, columns) in as_gmsh_has_them(name, columns) {
-            match layout {
-                Layout::Elements => write_on_elements(out, data, &name, &columns)?,
-                Layout::NodesOfElements => write_on_nodes_of_elements(out, data, &name, &columns)?,
-            }
-        }
-    }
-    Ok(())
-}
-
-/// Arrays of other than 1, 3 or 9 components are written component by component.
-fn as_gmsh_has_them<T: Copy>(name: &str, columns: Vec<T>) -> Vec<(String, Vec<T>)> {
-    match columns.len() {
-        1 | 3 | 9 => vec![(name.to_owned(), columns)],
-        _ => columns.iter().enumerate().map(|(k, &column)| (component(name, k), vec![column])).collect(),
-    }
-}
-
-fn begin(out: &mut dyn Write, section: &str, name: &str, components: usize, n: usize) -> io::Result<()> {
-    // One text, one time, three numbers: time step, components, count.
-    writeln!(out, "${section}\n1\n\"{}\"\n1\n0.0\n3\n0\n{components}\n{n}", unquoted(name))
-}
-
-fn write_on_points(out: &mut dyn Write, name: &str, columns: &[&[f64]]) -> io::Result<()> {
-    let n = columns[0].len();
-    begin(out, "NodeData", name, columns.len(), n)?;
-    for i in 0..n {
-        write!(out, "{}", i + 1)?;
-        for column in columns {
-            write!(out, " {}", Real(column[i]))?;
-        }
-        out.write_all(b"\n")?;
-    }
-    writeln!(out, "$EndNodeData")
-}
-
-fn write_on_elements(out: &mut dyn Write, data: &MeshData, name: &str, columns: &[CellColumn<'_>]) -> io::Result<()> {
-    let n = data.face_count() + data.cell_count();
-    begin(out, "ElementData", name, columns.len(), n)?;
-    let mut values: Vec<_> = columns.iter().map(|c| c.all()).collect();
-    for i in 0..n {
-        write!(out, "{}", i + 1)?;
-        for column in &mut values {
-            write!(out, " {}", Real(column.next().unwrap_or(f64::NAN)))?;
-        }
-        out.write_all(b"\n")?;
-    }
-    writeln!(out, "$EndElementData")
-}
-
-fn write_on_nodes_of_elements(
-    out: &mut dyn Write,
-    data: &MeshData,
-    name: &str,
-    columns: &[CellColumn<'_>],
-) -> io::Result<()> {
-    let on = columns.iter().map(|c| c.on()).fold((false, false), |a, b| (a.0 || b.0, a.1 || b.1));
-    let n = data.quads.len() * usize::from(on.0) + data.hexes.len() * usize::from(on.1);
-    begin(out, "ElementNodeData", name, columns.len(), n)?;
-    let mut values: Vec<_> = columns.iter().map(|c| c.all()).collect();
-    for (i, (element_type, nodes, _)) in elements(data).enumerate() {
-        let value: Vec<Real> = values.iter_mut().map(|v| Real(v.next().unwrap_or(f64::NAN))).collect();
-        if !(element_type == QUAD && on.0 || element_type == HEX && on.1) {
-            continue;
-        }
-        write!(out, "{} {}", i + 1, nodes.len())?;
-        for component in nodes.iter().flat_map(|_| &value) {
-            write!(out, " {component}")?;
-        }
-        out.write_all(b"\n")?;
-    }
-    writeln!(out, "$EndElementNodeData")
 }

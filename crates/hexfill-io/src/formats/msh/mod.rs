@@ -6,9 +6,13 @@
 //! Tags of points, which Gmsh does not know, are written as node data named `tag`.
 
 mod common;
+mod physical;
+mod read;
+mod sections;
 mod v2;
 mod v4;
 
-pub(crate) use common::{Numbers, read};
+pub(crate) use common::Numbers;
+pub(crate) use read::read;
 pub(crate) use v2::write as write22;
 pub(crate) use v4::write as write41;

@@ -1,6 +1,8 @@
 //! MSH 2.2: nodes with numbers, elements with numbers and two tags (physical group, elementary entity).
 
-use super::common::{Layout, Physical, Reader, dimension, elements, nodes_of, write_data};
+use super::common::{Reader, dimension, elements, nodes_of};
+use super::physical::Physical;
+use super::sections::{Layout, write_data};
 use crate::data::MeshData;
 use crate::error::ReadError;
 use crate::groups::Combination;

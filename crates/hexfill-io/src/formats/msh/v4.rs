@@ -1,6 +1,8 @@
 //! MSH 4.1: nodes and elements in blocks, each block on an entity; entities carry the physical groups.
 
-use super::common::{Layout, Physical, Reader, dimension, elements, nodes_of, write_data};
+use super::common::{Reader, dimension, elements, nodes_of};
+use super::physical::Physical;
+use super::sections::{Layout, write_data};
 use crate::data::MeshData;
 use crate::error::ReadError;
 use crate::source::reserve;

@@ -2,7 +2,7 @@
 //! borrowed from it.
 
 use super::arrays::{Bytes, Layout, unpack};
-use crate::assembly::{Assembly, Values};
+use crate::assembly::{Assembly, Slot, Values};
 use crate::data::MeshData;
 use crate::error::{Place, Position, ReadError, snippet};
 use crate::formats::vtk::{Scalar, cells};
@@ -10,6 +10,7 @@ use crate::limits::unpacked_inside;
 use crate::source::{Source, parse_integer, parse_number};
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::{Reader, XmlVersion};
+use std::borrow::Cow;
 use std::cell::Cell;
 
 /// Where an array stands in a piece.
@@ -54,6 +55,13 @@ struct Array<'a> {
     text: &'a str,
     /// Byte of the file where the element begins.
     start: usize,
+}
+
+impl Array<'_> {
+    /// Whether the array is data of the user, of which there may be any number.
+    fn is_data(&self) -> bool {
+        matches!(self.section, Section::PointData | Section::CellData)
+    }
 }
 
 #[derive(Default)]
@@ -226,123 +234,151 @@ fn appended<'a>(file: &File<'a>, cut: usize) -> Result<(&'a [u8], bool), ReadErr
 
 fn attribute(element: &BytesStart<'_>, name: &str) -> Option<String> {
     let attribute = element.try_get_attribute(name).ok()??;
-    attribute.normalized_value(XmlVersion::Implicit1_0).ok().map(std::borrow::Cow::into_owned)
+    attribute.normalized_value(XmlVersion::Implicit1_0).ok().map(Cow::into_owned)
 }
 
 /// Reads the XML: sets the layout and collects the pieces with their arrays, and the arrays of the file as a whole.
 fn parse<'a>(file: &mut File<'_>, text: &'a str) -> Result<(Vec<Piece<'a>>, Vec<Array<'a>>), ReadError> {
     let mut xml = Reader::from_str(text);
-    let mut pieces: Vec<Piece<'a>> = Vec::new();
-    let mut fields: Vec<Array<'a>> = Vec::new();
-    let mut section = None;
-    let mut in_piece = false;
-    let mut array: Option<Array<'a>> = None;
-    let mut depth = 0u32;
-    let mut array_depth = 0;
-    let mut root = false;
+    let mut open = Open::default();
     loop {
         let start = xml.buffer_position() as usize;
         let event = xml.read_event().map_err(|e| {
             let at = xml.error_position() as usize;
             file.malformed(at, "well-formed XML", e.to_string(), "the file is truncated or damaged: export it again")
         })?;
-        let (element, empty) = match event {
-            Event::Start(e) => {
-                depth += 1;
-                (e, false)
+        match event {
+            Event::Start(element) => {
+                open.depth += 1;
+                open.element(file, &element, false, start)?;
             }
-            Event::Empty(e) => (e, true),
-            Event::End(e) => {
-                depth = depth.saturating_sub(1);
-                match e.name().as_ref() {
-                    "DataArray" => match (array.take(), pieces.last_mut()) {
-                        (Some(done), _) if done.section == Section::FieldData => fields.push(done),
-                        (Some(done), Some(piece)) => piece.arrays.push(done),
-                        _ => {}
-                    },
-                    "Piece" => in_piece = false,
-                    name if Section::from_name(name).is_some() => section = None,
-                    _ => {}
-                }
-                continue;
-            }
-            Event::Text(t) => {
-                let (Some(array), std::borrow::Cow::Borrowed(text)) = (&mut array, t.into_inner()) else { continue };
-                if depth != array_depth {
-                    continue; // an InformationKey inside the array
-                }
-                if array.text.trim_ascii().is_empty() {
-                    array.text = text;
-                } else if !text.trim_ascii().is_empty() {
-                    return Err(file.unsupported(start, "a comment inside an array", "remove the comment"));
-                }
-                continue;
-            }
+            Event::Empty(element) => open.element(file, &element, true, start)?,
+            Event::End(element) => open.close(element.name().as_ref()),
+            Event::Text(text) => open.text(file, text.into_inner(), start)?,
             Event::Eof => break,
-            _ => continue,
-        };
-        let name = element.name().as_ref().to_owned();
-        match name.as_str() {
-            "VTKFile" => {
-                root = true;
-                read_root(file, &element, start)?;
-            }
-            _ if !root => {
-                let given = format!("`<{name}>`");
-                return Err(file.malformed(
-                    start,
-                    "`<VTKFile>`",
-                    given,
-                    "is this a VTK XML file? name the format otherwise",
-                ));
-            }
-            "Piece" => {
-                in_piece = !empty;
-                let count = |attr: &str| -> Result<u64, ReadError> {
-                    let Some(text) = attribute(&element, attr) else { return Ok(0) };
-                    let count = text.trim().parse().ok().filter(|&n: &u64| n <= u64::from(u32::MAX));
-                    count.ok_or_else(|| {
-                        file.malformed(
-                            start,
-                            format!("a count below 2^32 for {attr}"),
-                            snippet(text.as_bytes()),
-                            "repair the file",
-                        )
-                    })
-                };
-                let (points, cells) = (count("NumberOfPoints")?, count("NumberOfCells")?);
-                pieces.push(Piece { points, cells, arrays: Vec::new(), start });
-            }
-            "FieldData" => section = (!empty).then_some(Section::FieldData),
-            "DataArray" if in_piece || section == Some(Section::FieldData) => {
-                let Some(section) = section else { continue };
-                let parsed = Array {
-                    section,
-                    name: attribute(&element, "Name").unwrap_or_default(),
-                    scalar: attribute(&element, "type").unwrap_or_default(),
-                    components: attribute(&element, "NumberOfComponents").and_then(|c| c.parse().ok()).unwrap_or(1),
-                    format: attribute(&element, "format").unwrap_or_else(|| "ascii".to_owned()),
-                    offset: attribute(&element, "offset").and_then(|o| o.parse().ok()),
-                    text: "",
-                    start,
-                };
-                match pieces.last_mut() {
-                    _ if empty && !in_piece => {}
-                    Some(piece) if empty => piece.arrays.push(parsed),
-                    _ => (array, array_depth) = (Some(parsed), depth),
-                }
-            }
-            _ if in_piece => section = if empty { None } else { Section::from_name(&name).or(section) },
             _ => {}
         }
     }
-    if depth > 0 && file.appended.is_none() {
+    if open.depth > 0 && file.appended.is_none() {
         return Err(ReadError::Truncated { at: file.at(text.len()), expected: "`</VTKFile>`".to_owned() });
     }
-    if pieces.is_empty() {
+    if open.pieces.is_empty() {
         return Err(file.malformed(0, "a `<Piece>`", "none", "is this a VTK XML file? name the format otherwise"));
     }
-    Ok((pieces, fields))
+    Ok((open.pieces, open.fields))
+}
+
+/// Where the reader is in the XML, and what it has met.
+#[derive(Default)]
+struct Open<'a> {
+    pieces: Vec<Piece<'a>>,
+    /// Arrays of the file as a whole.
+    fields: Vec<Array<'a>>,
+    /// Whether `<VTKFile>` has been met.
+    root: bool,
+    in_piece: bool,
+    section: Option<Section>,
+    /// The array whose text is being read, and how deep it lies.
+    array: Option<Array<'a>>,
+    array_depth: u32,
+    /// Elements begun and not ended.
+    depth: u32,
+}
+
+impl<'a> Open<'a> {
+    /// An element begins (`empty`: and ends) at byte `start`.
+    fn element(
+        &mut self,
+        file: &mut File<'_>,
+        element: &BytesStart<'_>,
+        empty: bool,
+        start: usize,
+    ) -> Result<(), ReadError> {
+        match element.name().as_ref() {
+            "VTKFile" => {
+                self.root = true;
+                read_root(file, element, start)?;
+            }
+            name if !self.root => {
+                let remedy = "is this a VTK XML file? name the format otherwise";
+                return Err(file.malformed(start, "`<VTKFile>`", format!("`<{name}>`"), remedy));
+            }
+            "Piece" => {
+                self.in_piece = !empty;
+                let (points, cells) =
+                    (count(file, element, "NumberOfPoints", start)?, count(file, element, "NumberOfCells", start)?);
+                self.pieces.push(Piece { points, cells, arrays: Vec::new(), start });
+            }
+            "FieldData" => self.section = (!empty).then_some(Section::FieldData),
+            "DataArray" if self.in_piece || self.section == Some(Section::FieldData) => {
+                self.data_array(element, empty, start);
+            }
+            name if self.in_piece => {
+                self.section = if empty { None } else { Section::from_name(name).or(self.section) };
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn data_array(&mut self, element: &BytesStart<'_>, empty: bool, start: usize) {
+        let Some(section) = self.section else { return };
+        let array = Array {
+            section,
+            name: attribute(element, "Name").unwrap_or_default(),
+            scalar: attribute(element, "type").unwrap_or_default(),
+            components: attribute(element, "NumberOfComponents").and_then(|c| c.parse().ok()).unwrap_or(1),
+            format: attribute(element, "format").unwrap_or_else(|| "ascii".to_owned()),
+            offset: attribute(element, "offset").and_then(|o| o.parse().ok()),
+            text: "",
+            start,
+        };
+        match self.pieces.last_mut() {
+            // An array of the file as a whole without text has nothing to say.
+            _ if empty && !self.in_piece => {}
+            // Appended arrays are empty elements.
+            Some(piece) if empty => piece.arrays.push(array),
+            _ => (self.array, self.array_depth) = (Some(array), self.depth),
+        }
+    }
+
+    fn text(&mut self, file: &File<'_>, text: Cow<'a, str>, start: usize) -> Result<(), ReadError> {
+        let (Some(array), Cow::Borrowed(text)) = (&mut self.array, text) else { return Ok(()) };
+        if self.depth != self.array_depth {
+            return Ok(()); // an InformationKey inside the array
+        }
+        if array.text.trim_ascii().is_empty() {
+            array.text = text;
+        } else if !text.trim_ascii().is_empty() {
+            // Texts are borrowed from the file: two with a comment between them are no longer one.
+            return Err(file.unsupported(start, "a comment inside an array", "remove the comment"));
+        }
+        Ok(())
+    }
+
+    fn close(&mut self, name: &str) {
+        self.depth = self.depth.saturating_sub(1);
+        match name {
+            "DataArray" => match (self.array.take(), self.pieces.last_mut()) {
+                (Some(done), _) if done.section == Section::FieldData => self.fields.push(done),
+                (Some(done), Some(piece)) => piece.arrays.push(done),
+                _ => {}
+            },
+            "Piece" => self.in_piece = false,
+            name if Section::from_name(name).is_some() => self.section = None,
+            _ => {}
+        }
+    }
+}
+
+/// A count among the attributes of a piece; 0 if it is not there.
+fn count(file: &File<'_>, element: &BytesStart<'_>, name: &str, start: usize) -> Result<u64, ReadError> {
+    let Some(text) = attribute(element, name) else { return Ok(0) };
+    let count = text.trim().parse().ok().filter(|&n: &u64| n <= u64::from(u32::MAX));
+    count.ok_or_else(|| {
+        let expected = format!("a count below 2^32 for {name}");
+        file.malformed(start, expected, snippet(text.as_bytes()), "repair the file")
+    })
 }
 
 fn read_root(file: &mut File<'_>, element: &BytesStart<'_>, start: usize) -> Result<(), ReadError> {
@@ -384,14 +420,42 @@ fn whole(file: &File<'_>, piece: &Piece<'_>, section: Section, name: &str) -> Re
 
 fn add_piece(file: &File<'_>, piece: &Piece<'_>, several: bool, out: &mut Assembly) -> Result<(), ReadError> {
     let base = out.point_count();
+    check_once(file, piece)?;
+    add_points(file, piece, out)?;
+    // Data are on the cells in this order, whatever the order of the sections in the file.
+    let mut slots = Vec::new();
+    for section in [Section::Verts, Section::Lines, Section::Strips, Section::Polys, Section::Cells] {
+        add_cells(file, piece, section, base, out, &mut slots)?;
+    }
+    for array in piece.arrays.iter().filter(|a| a.is_data()) {
+        if several || Scalar::from_xml_name(&array.scalar).is_none() {
+            let why = if several { "the file has several pieces" } else { "it is text" };
+            out.note(format!("array `{}` is not kept: {why}", array.name));
+            continue;
+        }
+        let values = file.values(array)?;
+        if array.section == Section::PointData {
+            out.point_array(&array.name, array.components as usize, &values);
+        } else {
+            out.cell_array(&array.name, array.components as usize, &values, &slots);
+        }
+    }
+    Ok(())
+}
+
+/// Refuses a piece that has one of its arrays twice, as its first array would silently win.
+fn check_once(file: &File<'_>, piece: &Piece<'_>) -> Result<(), ReadError> {
     for (i, a) in piece.arrays.iter().enumerate() {
-        let is_data = matches!(a.section, Section::PointData | Section::CellData);
         let same = |b: &Array<'_>| b.section == a.section && (b.name == a.name || a.section == Section::Points);
-        if !is_data && piece.arrays[..i].iter().any(same) {
+        if !a.is_data() && piece.arrays[..i].iter().any(same) {
             let given = format!("`{}` again", a.name);
             return Err(file.malformed(a.start, "each array once", given, "remove the second one"));
         }
     }
+    Ok(())
+}
+
+fn add_points(file: &File<'_>, piece: &Piece<'_>, out: &mut Assembly) -> Result<(), ReadError> {
     if let Some(array) = piece.array(Section::Points, "") {
         let values = match file.values(array)? {
             Values::Real(v) => v,
@@ -417,60 +481,58 @@ fn add_piece(file: &File<'_>, piece: &Piece<'_>, several: bool, out: &mut Assemb
         let (given, limit) = (out.point_count() as u64, u64::from(u32::MAX));
         return Err(ReadError::TooLarge { at: file.at(piece.start), what: "points".to_owned(), given, limit });
     }
-    let mut slots = Vec::new();
-    for section in [Section::Verts, Section::Lines, Section::Strips, Section::Polys, Section::Cells] {
-        let ends = whole(file, piece, section, "offsets")?;
-        let nodes = whole(file, piece, section, "connectivity")?;
-        let start = piece.array(section, "offsets").map_or(piece.start, |a| a.start);
-        let rising = ends.windows(2).all(|w| w[0] <= w[1]) && ends.first().is_none_or(|&e| e >= 0);
-        if !rising || ends.last().copied().unwrap_or(0) != nodes.len() as i64 {
-            let expected = format!("offsets rising to {} in {section:?}", nodes.len());
-            return Err(file.malformed(start, expected, "others", "repair offsets or connectivity"));
-        }
-        let types = whole(file, piece, section, "types")?;
-        if section == Section::Cells && (types.len() != ends.len() || ends.len() as u64 != piece.cells) {
-            let given = format!("{} types and {} offsets", types.len(), ends.len());
-            let expected = format!("{} cells", piece.cells);
-            return Err(file.malformed(start, expected, given, "correct NumberOfCells or the arrays"));
-        }
-        let n = out.point_count() - base;
-        let mut cell = Vec::new();
-        let mut from = 0;
-        for (i, &end) in ends.iter().enumerate() {
-            cell.clear();
-            for &given in &nodes[from..end as usize] {
-                if !(0..n as i64).contains(&given) {
-                    let (at, highest) = (file.at(start), n as i64 - 1);
-                    return Err(ReadError::IndexOutOfRange { at, what: "point".to_owned(), given, lowest: 0, highest });
-                }
-                cell.push((base + given as usize) as u32);
-            }
-            from = end as usize;
-            let cell_type = match section {
-                Section::Verts => 2,
-                Section::Lines => 4,
-                Section::Strips => 6,
-                Section::Polys => cells::POLYGON,
-                _ => u8::try_from(types[i]).unwrap_or(255),
-            };
-            slots.push(cells::add(out, cell_type, &cell).map_err(|expected| {
-                let given = format!("{} for cell {i} (0-based)", cell.len());
-                file.malformed(start, expected, given, "correct connectivity or types")
-            })?);
-        }
+    Ok(())
+}
+
+/// The cells of one section, whose nodes count from `base`, the first point of the piece; appends where each went to `slots`.
+fn add_cells(
+    file: &File<'_>,
+    piece: &Piece<'_>,
+    section: Section,
+    base: usize,
+    out: &mut Assembly,
+    slots: &mut Vec<Slot>,
+) -> Result<(), ReadError> {
+    let ends = whole(file, piece, section, "offsets")?;
+    let nodes = whole(file, piece, section, "connectivity")?;
+    let start = piece.array(section, "offsets").map_or(piece.start, |a| a.start);
+    // VTK's offsets are the ends of the cells in `connectivity`, without a leading zero.
+    let rising = ends.windows(2).all(|w| w[0] <= w[1]) && ends.first().is_none_or(|&e| e >= 0);
+    if !rising || ends.last().copied().unwrap_or(0) != nodes.len() as i64 {
+        let expected = format!("offsets rising to {} in {section:?}", nodes.len());
+        return Err(file.malformed(start, expected, "others", "repair offsets or connectivity"));
     }
-    for array in piece.arrays.iter().filter(|a| matches!(a.section, Section::PointData | Section::CellData)) {
-        if several || Scalar::from_xml_name(&array.scalar).is_none() {
-            let why = if several { "the file has several pieces" } else { "it is text" };
-            out.note(format!("array `{}` is not kept: {why}", array.name));
-            continue;
+    let types = whole(file, piece, section, "types")?;
+    if section == Section::Cells && (types.len() != ends.len() || ends.len() as u64 != piece.cells) {
+        let given = format!("{} types and {} offsets", types.len(), ends.len());
+        let expected = format!("{} cells", piece.cells);
+        return Err(file.malformed(start, expected, given, "correct NumberOfCells or the arrays"));
+    }
+    let n = (out.point_count() - base) as i64;
+    let mut cell = Vec::new();
+    let mut from = 0;
+    for (i, &end) in ends.iter().enumerate() {
+        cell.clear();
+        for &given in &nodes[from..end as usize] {
+            if !(0..n).contains(&given) {
+                let (at, what) = (file.at(start), "point".to_owned());
+                return Err(ReadError::IndexOutOfRange { at, what, given, lowest: 0, highest: n - 1 });
+            }
+            cell.push((base + given as usize) as u32);
         }
-        let values = file.values(array)?;
-        if array.section == Section::PointData {
-            out.point_array(&array.name, array.components as usize, &values);
-        } else {
-            out.cell_array(&array.name, array.components as usize, &values, &slots);
-        }
+        from = end as usize;
+        // Only `Cells` lists the types of VTK; the other sections have one each.
+        let cell_type = match section {
+            Section::Verts => 2,
+            Section::Lines => 4,
+            Section::Strips => 6,
+            Section::Polys => cells::POLYGON,
+            _ => u8::try_from(types[i]).unwrap_or(255),
+        };
+        slots.push(cells::add(out, cell_type, &cell).map_err(|expected| {
+            let given = format!("{} for cell {i} (0-based)", cell.len());
+            file.malformed(start, expected, given, "correct connectivity or types")
+        })?);
     }
     Ok(())
 }

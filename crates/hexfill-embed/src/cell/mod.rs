@@ -1,0 +1,7 @@
+//! One cell: its Jacobian, what is known of it on the whole cell, and measures at a point.
+
+pub(crate) mod bisection;
+pub(crate) mod condition;
+pub(crate) mod frame;
+pub(crate) mod hessian;
+pub(crate) mod scaled_jacobian;

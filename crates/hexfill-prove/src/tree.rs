@@ -1,0 +1,179 @@
+//! The search tree: take the open quad that the fewest hexes can cover, try each of them with its images, go on.
+//!
+//! Every finished mesh covers that quad by exactly one of the hexes, so the children of a node divide the finished meshes among them:
+//! each mesh (its interior vertices unnamed) is met once. Nothing is random, and nothing depends on what was searched before.
+
+use crate::bound::{euler_rest, most_new_vertices};
+use crate::cover::{Allowance, Cover, covers, place_orbit};
+use crate::state::{Hex, MAX_QUADS, State};
+use crate::symmetry::Action;
+use hexfill_mesh::{Context, StopReason};
+
+/// How often the context is asked whether to stop.
+const NODES_BETWEEN_STOPS: u64 = 1 << 12;
+
+/// What a walk met.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Walked {
+    /// States visited.
+    pub nodes: u64,
+    /// Sum over them of a hash of the hexes on the way there.
+    pub tree_sum: u128,
+    /// Finished meshes.
+    pub found: Vec<Vec<Hex>>,
+}
+
+/// A state and what is needed to walk on from it.
+#[derive(Clone)]
+pub(crate) struct Walker {
+    state: State,
+    action: Action,
+    /// Per quad met whether it stands for its images.
+    stands: Vec<bool>,
+    max_hexes: i32,
+    /// Per quad how many covers were counted last, a guess for the next time.
+    last_count: Vec<u32>,
+    pub(crate) walked: Walked,
+}
+
+/// Where a walk is.
+#[derive(Clone, Copy)]
+struct Place {
+    moment: crate::state::Moment,
+    stands: usize,
+}
+
+impl Walker {
+    pub(crate) fn new(state: State, action: Action, max_hexes: usize) -> Self {
+        let n = state.n_quads_met() as u16;
+        let sorted = |q: u16, g: usize| {
+            let mut image = state.quad(q).map(|v| action.image(g, v));
+            image.sort_unstable();
+            image
+        };
+        let stands =
+            (0..n).map(|q| (0..q).all(|p| (1..action.order()).all(|g| sorted(p, g) != sorted(q, 0)))).collect();
+        Self {
+            state,
+            action,
+            stands,
+            max_hexes: max_hexes as i32,
+            last_count: vec![8; MAX_QUADS],
+            walked: Walked::default(),
+        }
+    }
+
+    /// The hexes placed.
+    pub(crate) fn hexes(&self) -> &[Hex] {
+        &self.state.hexes
+    }
+
+    /// Whether no quad is open.
+    pub(crate) fn is_finished(&self) -> bool {
+        self.state.counts.open == 0
+    }
+
+    fn now(&self) -> Place {
+        Place { moment: self.state.now(), stands: self.stands.len() }
+    }
+
+    fn undo(&mut self, to: Place) {
+        self.state.undo(&to.moment);
+        self.stands.truncate(to.stands);
+    }
+
+    /// Places a cover with its images; `false` if they do not fit (the state must be undone).
+    pub(crate) fn place(&mut self, cover: &Cover) -> bool {
+        let Some(made) = place_orbit(&mut self.state, &mut self.action, cover) else { return false };
+        let first = self.stands.len();
+        self.stands.resize(first + made, true);
+        self.stands.resize(self.state.n_quads_met(), false);
+        self.state.counts.hexes <= self.max_hexes
+    }
+
+    /// The hexes that can cover the most constrained open quad; none if the state cannot be finished.
+    fn branches(&mut self) -> Vec<Cover> {
+        let left = self.max_hexes - self.state.counts.hexes;
+        let Some(new_vertices) = most_new_vertices(&self.state, left) else { return Vec::new() };
+        let allowance = Allowance { new_vertices, excess: 2 * left + euler_rest(&self.state) };
+        // Those that had few covers before first: the fewer are known, the sooner counting stops. Of equal ones the oldest quad is
+        // taken, so that the choice does not depend on the order.
+        let mut quads: Vec<u16> = self.state.open_quads().filter(|&q| self.stands[usize::from(q)]).collect();
+        quads.sort_by_key(|&q| self.last_count[usize::from(q)]);
+        let mut best = None;
+        let mut fewest = usize::MAX;
+        for q in quads {
+            let mut count = 0;
+            covers(&self.state, &mut self.action, q, allowance, |_| {
+                count += 1;
+                count <= fewest
+            });
+            self.last_count[usize::from(q)] = count as u32;
+            if count == 0 {
+                return Vec::new();
+            }
+            if count < fewest || count == fewest && best.is_some_and(|b| q < b) {
+                (best, fewest) = (Some(q), count);
+            }
+        }
+        let mut out = Vec::with_capacity(fewest);
+        if let Some(q) = best {
+            covers(&self.state, &mut self.action, q, allowance, |cover| {
+                out.push(*cover);
+                true
+            });
+        }
+        out
+    }
+
+    /// The covers that lead on from here and fit.
+    pub(crate) fn children(&mut self) -> Vec<Cover> {
+        let mut branches = self.branches();
+        branches.retain(|cover| {
+            let here = self.now();
+            let fits = self.place(cover);
+            self.undo(here);
+            fits
+        });
+        branches
+    }
+
+    /// Visits this state and all below it. `path` is the hash of the hexes on the way.
+    ///
+    /// # Errors
+    /// The reason to stop, if the context says so.
+    pub(crate) fn descend(&mut self, path: u64, ctx: &Context<'_>) -> Result<(), StopReason> {
+        self.walked.nodes += 1;
+        self.walked.tree_sum = self.walked.tree_sum.wrapping_add(u128::from(mix(path)));
+        if self.walked.nodes.is_multiple_of(NODES_BETWEEN_STOPS)
+            && let Some(reason) = ctx.stop()
+        {
+            return Err(reason);
+        }
+        if self.is_finished() {
+            self.walked.found.push(self.state.hexes.clone());
+            return Ok(());
+        }
+        for cover in self.branches() {
+            let here = self.now();
+            if self.place(&cover) {
+                self.descend(step(path, &cover), ctx)?;
+            }
+            self.undo(here);
+        }
+        Ok(())
+    }
+}
+
+/// The hash of a longer way.
+pub(crate) fn step(path: u64, cover: &Cover) -> u64 {
+    mix(path ^ u64::from_le_bytes(cover.hex))
+}
+
+/// The finalizer of splitmix64 (Steele, Lea, Flood 2014).
+fn mix(x: u64) -> u64 {
+    let x = x.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    x ^ (x >> 31)
+}

@@ -1,0 +1,465 @@
+//! The automatic strategy where coordinates count: candidates of several engines, embedded, and the best of them.
+//!
+//! Engines in this order, the next only if none before brought a good mesh: atlas and shelling, inward flips, construction.
+//! The order of meshes: certified ones first, then those whose worst scaled Jacobian is at least [`GOOD`], then fewest
+//! hexes for their quality ([`Prefer`]).
+
+use crate::best::budget::Budget;
+use crate::best::choice::{Candidate, Choice, Outcome};
+use crate::best::hopeless::{Hopeless, hopeless};
+use crate::best::no_room::no_room;
+use crate::best::pillows::with_pillows;
+use crate::best::{PlaceOptions, PlacedFill};
+use crate::fill::attempt::Attempt;
+use crate::fill::construct::construct;
+use crate::fill::error::FillError;
+use crate::fill::filled::{FillResult, Filled, Route};
+use crate::fill::judged::verify;
+use crate::fill::last_resort::{LastResort, leaving_time};
+use crate::fill::options::{Effort, FillOptions, Prefer, Strategy};
+use crate::fill::search::search;
+use crate::fill::shelled::shelled;
+use crate::fill::stored::stored_mesh;
+use crate::place::placed::Placed;
+use crate::place::{place_as_it_is, place_at, place_best};
+use crate::problem::Problem;
+use crate::simplify::carried_positions;
+use hexfill_embed::quick_star_bound;
+use hexfill_mesh::{Context, StopReason, VertexId, hex_isomorphism};
+use hexfill_search::MAX_QUADS;
+use hexfill_shell::{Layer, SplitOptions, cut_boundary_layers, split_stars};
+
+/// The worst scaled Jacobian from which on a mesh is good enough to compute on.
+pub(crate) const GOOD: f64 = 0.2;
+
+/// Surfaces of at most so many quads have many fillings in the atlas.
+const SMALLEST: usize = 24;
+/// Starts for each of these: the first ones find most of what many find.
+const STARTS: u32 = 2;
+
+/// Surfaces of more quads are constructed only if nothing else filled them.
+const MOST_CONSTRUCTED: usize = 1000;
+
+/// Pillows are put into meshes of surfaces of at most so many quads.
+const MOST_PILLOWED: usize = 160;
+
+/// The place of a mesh in the order; smaller is better.
+type Rank = (u8, f64);
+
+fn rank(filled: &Filled, placed: &Placed, prefer: Prefer) -> Rank {
+    let invalid = placed.cells.iter().filter(|c| !c.valid).count();
+    if placed.cells.is_empty() || invalid > 0 {
+        return (2, if placed.cells.is_empty() { f64::MAX } else { invalid as f64 });
+    }
+    let worst = placed.worst();
+    (u8::from(worst < GOOD), within(filled.mesh.n_hexes(), worst, prefer))
+}
+
+/// The order among good meshes.
+fn within(hexes: usize, worst: f64, prefer: Prefer) -> f64 {
+    match prefer {
+        Prefer::Balance => hexes as f64 / worst.powi(3),
+        Prefer::Hexes => hexes as f64,
+        Prefer::Quality => -worst,
+    }
+}
+
+/// One mesh for the problem with coordinates, by the order above.
+///
+/// # Errors
+/// As [`crate::fill`].
+pub(crate) fn fill_best(
+    problem: &Problem,
+    options: &FillOptions,
+    how: &PlaceOptions,
+    embed: &hexfill_embed::Options,
+    boundary: &[[f64; 3]],
+    ctx: &Context<'_>,
+) -> Result<PlacedFill, FillError> {
+    let result = FillResult::new();
+    let early = leaving_time(problem, options, ctx);
+    let budget = options.effort.budget(&options.shell);
+    let mut trial = Trial {
+        problem,
+        options,
+        boundary,
+        how,
+        ctx,
+        early,
+        embed,
+        budget,
+        result,
+        best: None,
+        seen: Vec::new(),
+        tangled: None,
+        hopeless: None,
+    };
+    trial.look_up()?;
+    trial.shell()?;
+    let why_none = trial.go_on()?;
+    trial.resort()?;
+    trial.polish();
+    let layers = trial.cut_layers()?;
+    Ok(trial.finish(why_none, layers))
+}
+
+/// The best mesh so far and what was tried.
+struct Trial<'a> {
+    problem: &'a Problem,
+    options: &'a FillOptions,
+    boundary: &'a [[f64; 3]],
+    how: &'a PlaceOptions,
+    ctx: &'a Context<'a>,
+    /// For engines that may find nothing.
+    early: Context<'a>,
+    embed: &'a hexfill_embed::Options,
+    budget: Budget,
+    /// What the engines say; their meshes stay here until they are considered.
+    result: FillResult,
+    best: Option<(Rank, Filled, Placed)>,
+    /// The meshes considered.
+    seen: Vec<Candidate>,
+    /// The shelled mesh nearest to valid positions, while none has any: bad corners first, then hexes.
+    tangled: Option<Tangled>,
+    /// Why no work is spent beyond the first trials, once that was asked.
+    hopeless: Option<Option<Hopeless>>,
+}
+
+/// A shelled mesh whose embedding failed.
+struct Tangled {
+    /// Hexes with a corner that is not positive.
+    bad: usize,
+    filled: Filled,
+    points: Vec<[f64; 3]>,
+}
+
+impl<'a> Trial<'a> {
+    /// Looks a small sphere up in the atlas, and any surface in the catalogue.
+    fn look_up(&mut self) -> Result<(), FillError> {
+        if self.options.strategy != Strategy::Auto {
+            return Ok(());
+        }
+        if self.is_small() {
+            // One cavity: the surface itself.
+            self.flip_inward(1)?;
+        }
+        let Some(mesh) = stored_mesh(&self.problem.surface) else { return Ok(()) };
+        let is_new = self.best.as_ref().is_none_or(|(_, known, _)| hex_isomorphism(&known.mesh, &mesh) == Ok(None));
+        if is_new && mesh.n_hexes() as u64 <= u64::from(self.options.max_hexes) {
+            verify(&self.problem.surface, &mesh, Route::Catalogue)?;
+            self.consider(Filled::by(Route::Catalogue, mesh))?;
+        }
+        Ok(())
+    }
+
+    /// Shells the surface.
+    fn shell(&mut self) -> Result<(), FillError> {
+        if self.options.effort == Effort::Fast && self.is_enough() && self.options.layers.is_none() {
+            return Ok(());
+        }
+        let how = FillOptions { shell: self.budget.shell.clone(), ..self.options.clone() };
+        for filled in shelled(self.problem, &how, &self.early, &mut self.result)? {
+            if self.best.is_some()
+                && (self.ctx.stop().is_some() || self.options.effort == Effort::Fast && self.is_enough())
+            {
+                break;
+            }
+            self.consider(filled)?;
+        }
+        Ok(())
+    }
+
+    /// Asks the other engines where no mesh is good yet. Says why none can be valid, if that is known.
+    fn go_on(&mut self) -> Result<Option<String>, FillError> {
+        if self.is_enough() || self.ctx.stop().is_some() {
+            return Ok(None);
+        }
+        if self.options.strategy != Strategy::Auto {
+            self.put_pillows()?;
+            return Ok(None);
+        }
+        let none_valid = no_room(&self.problem.surface, self.boundary).map(|why| format!("none can be valid: {why}"));
+        let why_none = none_valid.or_else(|| match self.hopeless() {
+            Some(Hopeless::Crosses(why)) => Some(format!("{why} (--best goes on all the same)")),
+            _ => None,
+        });
+        if self.is_small() && why_none.is_none() {
+            if self.class() != Some(1) || self.budget.enough.is_none() {
+                self.flip_inward(self.options.inward_cavities.min(self.budget.cavities))?;
+            }
+            self.look_at_more_fillings()?;
+        }
+        if why_none.is_none() {
+            self.put_pillows()?;
+        }
+        // A construction has some 46 hexes a quad: where shelling left a few of its own invalid, it is tried on small surfaces only.
+        let worth_trying = match self.class() {
+            None => true,
+            Some(2) => why_none.is_none() && self.problem.surface.n_quads() <= MOST_CONSTRUCTED,
+            Some(_) => false,
+        };
+        if worth_trying && self.ctx.stop().is_none() {
+            construct(self.problem, self.options, self.ctx, &mut self.result)?;
+            self.consider_found()?;
+        }
+        Ok(why_none)
+    }
+
+    /// Puts pillows into the shelled mesh that is nearest to valid positions, if none has any. Only on small surfaces: the work grows with the mesh.
+    fn put_pillows(&mut self) -> Result<(), FillError> {
+        let surface = &self.problem.surface;
+        let is_worth = self.class() == Some(2) && surface.n_quads() <= MOST_PILLOWED && self.ctx.stop().is_none();
+        let Some(limits) = self.budget.pillows.filter(|_| is_worth && self.options.layers.is_none()) else {
+            return Ok(());
+        };
+        let Some(Tangled { filled, points, .. }) = self.tangled.take() else { return Ok(()) };
+        let made = with_pillows(&filled.mesh, &points, surface, limits, &self.early);
+        self.result.tried.push(Attempt::Pillows { found: made.is_some() });
+        let Some((mesh, points)) = made.filter(|(mesh, _)| mesh.n_hexes() as u64 <= u64::from(self.options.max_hexes))
+        else {
+            return Ok(());
+        };
+        verify(surface, &mesh, filled.route)?;
+        let pillowed = Filled { start: Some(points), ..filled.changed("pillows between", mesh) };
+        self.consider_from(pillowed, false)
+    }
+
+    /// Constructs the surface if the work was stopped before there was a mesh.
+    fn resort(&mut self) -> Result<(), FillError> {
+        if self.best.is_none() {
+            LastResort::default().fill(self.problem, self.options, self.ctx, &mut self.result)?;
+            self.consider_found()?;
+        }
+        Ok(())
+    }
+
+    /// Fills by inward flips over so many cavities.
+    fn flip_inward(&mut self, inward_cavities: u64) -> Result<(), FillError> {
+        let inward = FillOptions { inward_cavities, ..self.options.clone() };
+        search(&self.problem.surface, &inward, &self.early, &mut self.result)?;
+        self.consider_found()
+    }
+
+    /// Looks at many fillings of one of the smallest surfaces, which the atlas knows.
+    fn look_at_more_fillings(&mut self) -> Result<(), FillError> {
+        if self.is_enough() || self.problem.surface.n_quads() > SMALLEST || self.ctx.stop().is_some() {
+            return Ok(());
+        }
+        let more = FillOptions { count: self.budget.fillings, ..self.options.clone() };
+        let mut found = FillResult::new();
+        search(&self.problem.surface, &more, &self.early, &mut found)?;
+        if found.stop != StopReason::Finished {
+            self.result.stop = found.stop;
+        }
+        self.result.tried.push(Attempt::Fillings { found: found.meshes.len() });
+        let mut embed = *self.embed;
+        if embed.starts == 0 {
+            embed.starts = STARTS;
+        }
+        match place_best(&found.meshes, self.problem, self.boundary, &embed, &self.limited()) {
+            Some((filled, placed)) if placed.is_certified() => self.consider(filled),
+            _ => Ok(()),
+        }
+    }
+
+    /// Why the surface is not worth more than one trial of each mesh, asked where none is valid yet.
+    fn hopeless(&mut self) -> Option<Hopeless> {
+        if self.options.effort == Effort::Best || !matches!(self.class(), None | Some(2)) {
+            return None;
+        }
+        let (problem, boundary) = (self.problem, self.boundary);
+        self.hopeless.get_or_insert_with(|| hopeless(problem, boundary)).clone()
+    }
+
+    fn is_small(&self) -> bool {
+        self.problem.surface.is_sphere() && self.problem.surface.n_quads() <= MAX_QUADS
+    }
+
+    fn limited(&self) -> Context<'a> {
+        self.how.limit.map_or(*self.ctx, |limit| self.ctx.with_time_limit(limit))
+    }
+
+    fn class(&self) -> Option<u8> {
+        self.best.as_ref().map(|((class, _), ..)| *class)
+    }
+
+    /// Whether no other engine need be asked.
+    fn is_enough(&self) -> bool {
+        self.class().zip(self.budget.enough).is_some_and(|(class, enough)| class <= enough)
+    }
+
+    /// Considers the meshes that an engine found.
+    fn consider_found(&mut self) -> Result<(), FillError> {
+        std::mem::take(&mut self.result.meshes).into_iter().try_for_each(|filled| self.consider(filled))
+    }
+
+    /// Embeds a mesh and keeps it if it is the best. The start positions of a shelling are a guess.
+    fn consider(&mut self, filled: Filled) -> Result<(), FillError> {
+        let is_guess = filled.route == Route::Shelling;
+        self.consider_from(filled, is_guess)
+    }
+
+    /// [`Self::consider`], where start positions are a guess, to be smoothed first, or what to begin with.
+    fn consider_from(&mut self, mut filled: Filled, is_guess: bool) -> Result<(), FillError> {
+        let prefer = self.options.prefer;
+        if self.options.layers.is_some() && filled.route != Route::Shelling {
+            // Layers are cut out of a pillow, which shelling puts by itself.
+            let mut pillow = SplitOptions::default();
+            (pillow.below, pillow.layer) = (-1.0, Layer::Always);
+            let Some(pillowed) = split_stars(&filled.mesh, self.boundary, &pillow, self.ctx) else { return Ok(()) };
+            verify(&self.problem.surface, &pillowed.mesh, filled.route)?;
+            filled = filled.changed("pillow", pillowed.mesh);
+        }
+        let is_shelled = filled.route == Route::Shelling;
+        if is_shelled {
+            let perfect = (0, within(filled.mesh.n_hexes(), 1.0, prefer));
+            if self.best.as_ref().is_some_and(|(r, ..)| *r <= perfect) {
+                return Ok(());
+            }
+        }
+        if is_shelled || filled.route == Route::Construction {
+            let bound = quick_star_bound(&filled.mesh, self.boundary).unwrap_or(1.0);
+            if let Some(split) = self.split(&filled, bound)? {
+                self.consider(split)?;
+            }
+            if bound <= NO_ROOM && self.best.is_some() {
+                self.seen.push(Candidate::new(&filled, Outcome::Bounded(bound)));
+                return Ok(());
+            }
+        }
+        let placed = if is_shelled {
+            // Its surface vertices lie where the surface's do, so there is one way to place it.
+            let mut one = *self.embed;
+            one.starts = one.starts.max(1);
+            one.programs = one.programs.min(self.budget.screening);
+            one.smooth_start = is_guess;
+            let placed = place_as_it_is(&filled, self.boundary, Some(&one), &self.limited());
+            self.placed_from_coarse(&filled, placed, one)
+        } else {
+            let mut how = *self.embed;
+            how.programs = how.programs.min(self.budget.others);
+            let is_late = self.best.is_some() || filled.route == Route::Construction;
+            if how.starts == 0 && is_late && self.hopeless().is_some() {
+                how.starts = 1;
+            }
+            let (turned, placed) = place_at(filled, self.problem, self.boundary, Some(&how), &self.limited());
+            filled = turned;
+            placed
+        };
+        if is_shelled && !placed.is_certified() {
+            let bad = placed.cells.iter().filter(|c| c.corner_scaled_jacobian <= 0.0).count();
+            let least = self.tangled.as_ref().map(|t| (t.bad, t.filled.mesh.n_hexes()));
+            if least.is_none_or(|least| (bad, filled.mesh.n_hexes()) < least) {
+                self.tangled = Some(Tangled { bad, filled: filled.clone(), points: placed.points.clone() });
+            }
+        }
+        let rank = rank(&filled, &placed, prefer);
+        let outcome = if placed.is_certified() { Outcome::Certified(placed.worst()) } else { Outcome::NotCertified };
+        self.seen.push(Candidate::new(&filled, outcome));
+        if self.best.as_ref().is_none_or(|(r, ..)| rank < *r) {
+            self.best = Some((rank, filled, placed));
+        }
+        Ok(())
+    }
+
+    /// A mesh that was placed, or placed once more if it is not good: from the positions of the coarse mesh it was lifted from, which has
+    /// few hexes and is often valid where the fine one is not.
+    fn placed_from_coarse(&self, filled: &Filled, placed: Placed, mut how: hexfill_embed::Options) -> Placed {
+        let is_good = placed.is_certified() && placed.worst() >= GOOD;
+        let Some(coarse) = filled.coarse.as_ref().filter(|_| !is_good && self.ctx.stop().is_none()) else {
+            return placed;
+        };
+        let at = hexfill_embed::embed(coarse.mesh(), &coarse.boundary(), None, &how, &self.limited());
+        let Some(start) = at.ok().and_then(|at| coarse.lifted(&at.points)) else { return placed };
+        let from = Filled { start: Some(start), ..filled.clone() };
+        how.smooth_start = false;
+        let again = place_as_it_is(&from, self.boundary, Some(&how), &self.limited());
+        let is_better = rank(filled, &again, self.options.prefer) < rank(filled, &placed, self.options.prefer);
+        if is_better { again } else { placed }
+    }
+
+    /// The mesh with the stars split that leave (next to) no room; `None` if there are none, or none can be helped.
+    fn split(&self, filled: &Filled, bound: f64) -> Result<Option<Filled>, FillError> {
+        let mut options = SplitOptions::default();
+        // Pillows are candidates of their own.
+        options.layer = Layer::Never;
+        if bound >= options.below {
+            return Ok(None);
+        }
+        let Some(split) = split_stars(&filled.mesh, self.boundary, &options, self.ctx) else { return Ok(None) };
+        let after = quick_star_bound(&split.mesh, self.boundary).unwrap_or(1.0);
+        if split.splits.is_empty() || after <= bound {
+            return Ok(None);
+        }
+        verify(&self.problem.surface, &split.mesh, filled.route)?;
+        let mut made = filled.changed("split stars", split.mesh);
+        // A construction starts from positions of its own.
+        let start = filled.start.as_ref().filter(|_| filled.route == Route::Construction);
+        made.start = start.map(|points| {
+            let origin: Vec<Option<VertexId>> =
+                (0..made.mesh.n_vertices()).map(|v| (v < points.len()).then(|| VertexId::new(v))).collect();
+            carried_positions(&made.mesh, &origin, points)
+        });
+        Ok(Some(made))
+    }
+
+    /// Raises the best mesh further, if it was only screened.
+    fn polish(&mut self) {
+        let limited = self.limited();
+        let Some((_, filled, placed)) = self.best.as_mut().filter(|_| self.budget.programs > 0) else { return };
+        let open = placed.embedding.as_ref().is_some_and(|e| placed.worst() < RELATIVE * e.target);
+        if filled.route != Route::Shelling || !placed.is_certified() || !open || limited.stop().is_some() {
+            return;
+        }
+        let mut more = *self.embed;
+        more.starts = 1;
+        more.programs = more.programs.min(self.budget.programs);
+        let from = Filled { start: Some(placed.points.clone()), ..filled.clone() };
+        let polished = place_as_it_is(&from, self.boundary, Some(&more), &limited);
+        if polished.is_certified() && polished.worst() > placed.worst() {
+            *placed = polished;
+        }
+    }
+
+    /// Cuts the pillow of the best mesh into the layers asked for, and says how many.
+    fn cut_layers(&mut self) -> Result<Option<u32>, FillError> {
+        let (Some(layers), Some((_, filled, placed))) = (self.options.layers, &mut self.best) else { return Ok(None) };
+        let surface = &self.problem.surface;
+        let Some((mesh, points)) = cut_boundary_layers(&filled.mesh, surface, &placed.points, &layers) else {
+            return Err(FillError::NotForStrategy {
+                what: "no mesh with a layer of one hexahedron under every quad was found, so there is nothing to cut into boundary layers"
+                    .to_owned(),
+                remedy: "leave --layers out",
+            });
+        };
+        verify(surface, &mesh, filled.route)?;
+        *filled = filled.changed("boundary layers", mesh);
+        *placed = Placed::judged(&filled.mesh, self.boundary, points, placed.embedding.take(), None);
+        Ok(Some(layers.count))
+    }
+
+    /// The best mesh, and in words why it and no other.
+    fn finish(self, why_none: Option<String>, layers: Option<u32>) -> PlacedFill {
+        let Self { best, seen, result, ctx, hopeless, .. } = self;
+        let choice = Choice {
+            kept: best.as_ref().filter(|_| seen.len() > 1).map(|(_, filled, _)| (filled.mesh.n_hexes(), filled.route)),
+            candidates: seen,
+            best_of: None,
+            none_tried: why_none,
+            one_start: match hopeless {
+                Some(Some(Hopeless::Sharp(why))) => Some(why),
+                _ => None,
+            },
+            layers,
+        };
+        let stop = if result.stop == StopReason::Finished { ctx.stop().unwrap_or(result.stop) } else { result.stop };
+        let meshes = best.into_iter().map(|(_, filled, placed)| (filled, Some(placed))).collect();
+        PlacedFill { meshes, stop, tried: result.tried, choice: (!choice.is_empty()).then_some(choice) }
+    }
+}
+
+/// A worst scaled Jacobian of this share of what was strived for is not raised further.
+const RELATIVE: f64 = 0.999;
+
+/// Stars that reach no more than this leave no room for a valid mesh.
+const NO_ROOM: f64 = 1e-6;

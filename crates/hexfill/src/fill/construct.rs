@@ -1,0 +1,77 @@
+//! The construction, made smaller if that was asked for.
+
+use crate::fill::attempt::Attempt;
+use crate::fill::error::FillError;
+use crate::fill::filled::{FillResult, Filled, Route};
+use crate::fill::judged::accept;
+use crate::fill::options::{FillOptions, InteriorFrom};
+use crate::problem::Problem;
+use crate::simplify::{carried_positions, simplified};
+use hexfill_construct::{CellChoice, ConstructOptions};
+use hexfill_mesh::{Context, HexMesh};
+use std::sync::Arc;
+use std::time::Instant;
+
+/// Constructions tried for each mesh asked for: some variants are isomorphic.
+const VARIANTS_PER_MESH: u64 = 4;
+
+/// The construction for everything else. Several meshes are variants of it that cost the same.
+pub(crate) fn construct(
+    problem: &Problem,
+    options: &FillOptions,
+    ctx: &Context<'_>,
+    result: &mut FillResult,
+) -> Result<(), FillError> {
+    let points = problem.positions();
+    // Tetrahedra that are given belong to the diagonals of the first variant.
+    let given = matches!(options.interior, InteriorFrom::Tets(_));
+    let variants = if given || options.count == 1 { 1 } else { VARIANTS_PER_MESH * options.count as u64 };
+    for variant in 0..variants {
+        let tets: Option<Arc<dyn hexfill_construct::InteriorTets>> = match &options.interior {
+            InteriorFrom::BuiltIn => None,
+            InteriorFrom::Tets(tets) => Some(tets.clone()),
+            InteriorFrom::Tetgen(program) => Some(Arc::new(program.clone())),
+        };
+        let cells = options.cells;
+        let how = ConstructOptions { tets, cells, variant, ..ConstructOptions::default() };
+        let made = match hexfill_construct::construct(&problem.surface, points.as_deref(), &how, ctx) {
+            Err(hexfill_construct::ConstructError::Stopped(reason)) => {
+                result.stop = reason;
+                result.tried.push(Attempt::ConstructionStopped);
+                return Ok(());
+            }
+            made => made?,
+        };
+        if variant == 0 {
+            result.tried.push(Attempt::Construction(Box::new(made.report)));
+        }
+        let (mesh, start) = simplify_construction(made.mesh, made.start, options, ctx, &mut result.tried);
+        if mesh.n_hexes() as u64 <= u64::from(options.max_hexes) {
+            let filled = Filled { start, ..Filled::by(Route::Construction, mesh) };
+            accept(&problem.surface, filled, options, result)?;
+        }
+        if result.meshes.len() >= options.count {
+            break;
+        }
+    }
+    Ok(())
+}
+
+/// A construction made smaller as the options of a fill ask for; its boundary comes first and keeps its ids.
+/// The caller judges.
+fn simplify_construction(
+    mesh: HexMesh,
+    start: Option<Vec<[f64; 3]>>,
+    options: &FillOptions,
+    ctx: &Context<'_>,
+    tried: &mut Vec<Attempt>,
+) -> (HexMesh, Option<Vec<[f64; 3]>>) {
+    let Some(how) = &options.simplify else { return (mesh, start) };
+    let left = ctx.deadline.map(|end| end.saturating_duration_since(Instant::now()));
+    let share = if options.cells == CellChoice::Fewest { 0.9 } else { 0.5 };
+    let limited = left.map_or(*ctx, |left| ctx.with_time_limit(left.mul_f64(share)));
+    let made = simplified(&mesh, how, options.atlas.as_deref(), &limited);
+    tried.push(Attempt::Simplification(made.report));
+    let start = start.map(|points| carried_positions(&made.mesh, &made.origin, &points));
+    (made.mesh, start)
+}

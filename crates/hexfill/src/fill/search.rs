@@ -1,0 +1,96 @@
+//! Small spheres: the atlas, inward flips, and growth of an atlas towards the surface.
+
+use crate::fill::attempt::Attempt;
+use crate::fill::error::FillError;
+use crate::fill::filled::{FillResult, Filled, Route};
+use crate::fill::judged::accept;
+use crate::fill::options::{FillOptions, Strategy};
+use hexfill_mesh::{Context, HexMesh, QuadSurface, StopReason};
+use hexfill_search::{
+    Atlas, Cavity, FillOptions as InwardOptions, GrowOptions, Growth, GrowthLog, MAX_CAP, fill_from_atlas,
+};
+
+/// Atlas, inward flips and, if nothing else may follow, growth.
+pub(crate) fn search(
+    surface: &QuadSurface,
+    options: &FillOptions,
+    ctx: &Context<'_>,
+    result: &mut FillResult,
+) -> Result<(), FillError> {
+    let atlas = options.atlas.as_deref().unwrap_or_else(|| Atlas::embedded());
+    let inward = InwardOptions {
+        max_hexes: options.max_hexes,
+        // Several placements may be isomorphic as meshes: look for more than are asked for.
+        count: if options.count == 1 { 1 } else { 8 * options.count },
+        improve: options.improve,
+        max_cavities: if options.improve { u64::MAX } else { options.inward_cavities },
+        beam: options.beam,
+    };
+    let outcome = fill_from_atlas(surface, atlas, &inward, ctx).expect("the caller checked: a small sphere");
+    if outcome.stop != StopReason::Finished {
+        result.stop = outcome.stop;
+    }
+    result.tried.push(Attempt::Atlas { states: atlas.n_states(), cavities: outcome.cavities });
+    for filling in outcome.fillings {
+        let route = if filling.glued == 0 { Route::Atlas } else { Route::InwardFlips };
+        accept(surface, Filled::by(route, filling.mesh), options, result)?;
+    }
+    if options.strategy == Strategy::Atlas && result.meshes.len() < options.count && ctx.stop().is_none() {
+        grow_towards(surface, options, ctx, result)?;
+    }
+    Ok(())
+}
+
+/// Grows an atlas from one cube until the surface is reached.
+fn grow_towards(
+    surface: &QuadSurface,
+    options: &FillOptions,
+    ctx: &Context<'_>,
+    result: &mut FillResult,
+) -> Result<(), FillError> {
+    let (cavity, ids) = Cavity::from_surface(surface).expect("the caller checked: a small sphere");
+    if surface.n_quads() > MAX_CAP {
+        result.tried.push(Attempt::NoGrowth);
+        return Ok(());
+    }
+    let grow_options = GrowOptions { cap: options.growth.cap.max(surface.n_quads()), ..options.growth };
+    let (mut log, mut growth) = match &options.growth_log {
+        Some(path) => {
+            let (log, growth) = GrowthLog::open(path, grow_options)?;
+            (Some(log), growth)
+        }
+        None => (None, Growth::new(grow_options)),
+    };
+    loop {
+        for ball in growth.balls_for(&cavity) {
+            if ball.n_hexes() as u64 > u64::from(options.max_hexes) {
+                continue;
+            }
+            if let Some((map, mirrored)) = ball.placements(&cavity).into_iter().next() {
+                let boundary: Vec<u32> = map.iter().map(|&v| ids[usize::from(v)]).collect();
+                let first = surface.n_vertices() as u32;
+                let (hexes, fresh) = ball.hexes_in(&boundary, mirrored, first);
+                let mesh = HexMesh::try_new((first + fresh) as usize, &hexes).expect("a ball's hexes glue properly");
+                accept(surface, Filled::by(Route::Growth, mesh), options, result)?;
+            }
+        }
+        if result.meshes.len() >= options.count || growth.is_exhausted() || growth.level() >= options.max_hexes {
+            break;
+        }
+        let report = growth.grow(ctx);
+        if let Some(stop) = report.stopped {
+            result.stop = stop;
+            break;
+        }
+        if let Some(log) = &mut log {
+            log.append(&growth, &report)?;
+        }
+    }
+    result.tried.push(Attempt::Growth {
+        cap: grow_options.cap,
+        width: grow_options.width,
+        hexes: growth.level(),
+        classes: growth.n_classes(),
+    });
+    Ok(())
+}

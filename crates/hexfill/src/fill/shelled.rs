@@ -1,0 +1,48 @@
+//! The surface swept inward by its own dual curves.
+
+use crate::fill::attempt::Attempt;
+use crate::fill::error::FillError;
+use crate::fill::filled::{FillResult, Filled, Route};
+use crate::fill::judged::verify;
+use crate::fill::options::FillOptions;
+use crate::problem::Problem;
+use hexfill_mesh::Context;
+use hexfill_shell::shell;
+
+/// Complete meshes by shelling, judged, those with least cost first.
+pub(crate) fn shelled(
+    problem: &Problem,
+    options: &FillOptions,
+    ctx: &Context<'_>,
+    result: &mut FillResult,
+) -> Result<Vec<Filled>, FillError> {
+    let points = problem.positions();
+    let mut how = options.shell.clone();
+    if options.layers.is_some() {
+        how.pillows = vec![1];
+    }
+    let made = shell(&problem.surface, points.as_deref(), &how, ctx);
+    result.stop = ctx.stop().unwrap_or(result.stop);
+    result.tried.push(Attempt::Shelling {
+        coarse_quads: made.coarse_quads,
+        meshes: made.meshes.len(),
+        left: made.left,
+    });
+    let mut meshes = Vec::new();
+    for shelled in made.meshes {
+        if ctx.stop().is_some() && !meshes.is_empty() {
+            break;
+        }
+        if shelled.mesh.n_hexes() as u64 <= u64::from(options.max_hexes) {
+            verify(&problem.surface, &shelled.mesh, Route::Shelling)?;
+            meshes.push(Filled {
+                mesh: shelled.mesh,
+                route: Route::Shelling,
+                start: shelled.points,
+                stages: shelled.stages,
+                coarse: shelled.coarse,
+            });
+        }
+    }
+    Ok(meshes)
+}

@@ -1,0 +1,152 @@
+//! [`Placed`]: positions with the judge's verdict on every hex.
+
+use crate::place::report::GeometryReport;
+use hexfill_check::{CellQuality, Judged, cell_quality};
+use hexfill_embed::{EmbedError, EmbedReport};
+use hexfill_io::MeshData;
+use hexfill_mesh::HexMesh;
+
+/// Positions of all vertices of a mesh with the judge's verdict on every hex.
+#[derive(Clone, Debug)]
+pub struct Placed {
+    pub(crate) points: Vec<[f64; 3]>,
+    pub(crate) cells: Vec<CellQuality>,
+    pub(crate) embedding: Option<EmbedReport>,
+    pub(crate) refused: Option<EmbedError>,
+    pub(crate) ways: usize,
+}
+
+/// The judge's numbers on every hex. Every vertex id of a `HexMesh` has a position here, so every hex has a quality.
+fn judged_cells(mesh: &HexMesh, points: &[[f64; 3]]) -> Vec<CellQuality> {
+    let hexes = mesh.hexes_raw();
+    let judged = Judged::connectivity(mesh.n_vertices(), &hexes).with_points(points);
+    cell_quality(&judged).into_iter().flatten().collect()
+}
+
+impl Placed {
+    /// A mesh at these positions, every hex judged. An embedding that failed must not leave more invalid hexes than it found: those that it
+    /// started from are kept then, with the boundary's positions put back.
+    pub(crate) fn judged(
+        mesh: &HexMesh,
+        boundary: &[[f64; 3]],
+        mut points: Vec<[f64; 3]>,
+        embedding: Option<EmbedReport>,
+        start: Option<&[[f64; 3]]>,
+    ) -> Self {
+        let mut cells = judged_cells(mesh, &points);
+        if let (Some(_), Some(start)) = (&embedding, start)
+            && !cells.iter().all(|c| c.valid)
+        {
+            let before = judged_cells(mesh, start);
+            let count = |cells: &[CellQuality]| cells.iter().filter(|c| c.valid).count();
+            if count(&before) > count(&cells) {
+                points.copy_from_slice(start);
+                points[..boundary.len()].copy_from_slice(boundary);
+                cells = before;
+            }
+        }
+        Self { points, cells, embedding, refused: None, ways: 1 }
+    }
+
+    /// Position per vertex; the surface's own come first, bit for bit.
+    pub fn points(&self) -> &[[f64; 3]] {
+        &self.points
+    }
+
+    /// The positions alone.
+    pub fn into_points(self) -> Vec<[f64; 3]> {
+        self.points
+    }
+
+    /// Per hex: its quality and whether det J > 0 was certified on all of it. Empty if nothing was judged.
+    pub fn cells(&self) -> &[CellQuality] {
+        &self.cells
+    }
+
+    /// What the embedding reports; absent if only start positions were asked for, no time was left, or none could be made.
+    pub fn embedding(&self) -> Option<&EmbedReport> {
+        self.embedding.as_ref()
+    }
+
+    /// Why there are no useful positions of the interior: the boundary's own do not span a solid.
+    pub fn refused(&self) -> Option<&EmbedError> {
+        self.refused.as_ref()
+    }
+
+    /// In how many ways the mesh lies on the surface, up to congruence. More than one if the surface has symmetries that its
+    /// positions lack; 1 if that was not asked.
+    pub fn ways(&self) -> usize {
+        self.ways
+    }
+
+    /// Judges positions that were changed, if they had been judged before.
+    pub(crate) fn judge_again(&mut self, mesh: &HexMesh) {
+        if !self.cells.is_empty() {
+            self.cells = judged_cells(mesh, &self.points);
+        }
+    }
+
+    /// Whether det J > 0 is certified on all of every hex.
+    pub fn is_certified(&self) -> bool {
+        !self.cells.is_empty() && self.cells.iter().all(|c| c.valid)
+    }
+
+    /// The least certified scaled Jacobian; -1 if a hex is not certified.
+    pub fn worst(&self) -> f64 {
+        self.cells.iter().map(|c| c.certified_lower).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The scaled Jacobians of the hexes that are certified.
+    fn certified(&self) -> impl Iterator<Item = f64> + '_ {
+        self.cells.iter().filter(|c| c.valid).map(|c| c.certified_lower.max(0.0))
+    }
+
+    fn volume_ratio(&self) -> Option<f64> {
+        let volumes = || self.cells.iter().map(|c| c.volume);
+        let (least, most) = (volumes().fold(f64::INFINITY, f64::min), volumes().fold(0.0, f64::max));
+        (!self.cells.is_empty() && least > 0.0 && (most / least).is_finite()).then_some(most / least)
+    }
+
+    /// Placements with fewer hexes that are not certified rank higher, then those with a larger worst scaled Jacobian.
+    pub(crate) fn rank(&self) -> (std::cmp::Reverse<usize>, f64) {
+        (std::cmp::Reverse(self.cells.iter().filter(|c| !c.valid).count()), self.worst())
+    }
+
+    /// The numbers.
+    pub fn report(&self) -> GeometryReport {
+        let judged = !self.cells.is_empty();
+        let corner = self.cells.iter().map(|c| c.corner_scaled_jacobian).fold(f64::INFINITY, f64::min);
+        GeometryReport {
+            certified: self.cells.iter().filter(|c| c.valid).count(),
+            hexes: self.cells.len(),
+            corner_scaled_jacobian: judged.then_some(corner),
+            certified_scaled_jacobian: judged.then(|| self.worst()),
+            mean_scaled_jacobian: judged.then(|| self.certified().sum::<f64>() / self.cells.len() as f64),
+            histogram: judged.then(|| {
+                let mut steps = [0; 10];
+                self.certified().for_each(|x| steps[((10.0 * x) as usize).min(9)] += 1);
+                steps
+            }),
+            volume_ratio: self.volume_ratio(),
+            edge_ratio: judged.then(|| self.cells.iter().map(|c| c.edge_ratio).fold(1.0, f64::max)),
+            embedding: self.embedding.clone(),
+            refused: self.refused.as_ref().map(ToString::to_string),
+            ways: self.ways,
+        }
+    }
+
+    /// Certified scaled Jacobian per hex, for colours.
+    pub fn scaled_jacobians(&self) -> Vec<f64> {
+        self.cells.iter().map(|c| if c.valid { c.certified_lower } else { c.corner_scaled_jacobian.min(0.0) }).collect()
+    }
+
+    /// Gives file data two numbers per hex: whether it is certified (1 or 0), and its scaled Jacobian. Those of an earlier
+    /// judgement are replaced.
+    pub fn flag(&self, data: &mut MeshData) {
+        let certified = self.cells.iter().map(|c| f64::from(u8::from(c.valid))).collect();
+        for (name, values) in [("certified_positive", certified), ("scaled_jacobian", self.scaled_jacobians())] {
+            data.hex_data.retain(|(n, _)| n != name);
+            data.hex_data.push((name.to_owned(), values));
+        }
+    }
+}
