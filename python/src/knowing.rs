@@ -70,7 +70,10 @@ pub(crate) fn atlas(py: Python<'_>, data: &Data, name: String, how: Run) -> PyRe
                 "blocked_pairs": ball.boundary.n_blocked(),
             })
         };
-        let rows: Vec<Value> = Atlas::embedded().balls_for(&cavity).map(|ball| row(&ball)).collect();
+        let mut balls: Vec<_> =
+            [Atlas::fewest(), Atlas::embedded()].iter().flat_map(|atlas| atlas.balls_for(&cavity)).collect();
+        balls.sort_by_key(hexfill::unstable::search::Ball::n_hexes);
+        let rows: Vec<Value> = balls.iter().map(row).collect();
         Ok(json!(rows).to_string())
     })?;
     Ok(text)

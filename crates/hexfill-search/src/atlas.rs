@@ -109,6 +109,16 @@ impl Atlas {
         })
     }
 
+    /// The smallest fillings known of nearly all 3-connected spheres of up to 20 quads, compiled into the library. For connectivity alone: where positions
+    /// are wanted the [embedded](Self::embedded) atlas serves better, whose fillings have more hexes and embed more often. Made by `hexfill atlas complete`;
+    /// see `record/`.
+    pub fn fewest() -> &'static Self {
+        static ATLAS: OnceLock<Atlas> = OnceLock::new();
+        ATLAS.get_or_init(|| {
+            Self::read_packed(include_bytes!("../data/spheres-20.hxatlas")).expect("the shipped atlas is intact")
+        })
+    }
+
     /// Number of states, steps included.
     pub fn n_states(&self) -> usize {
         self.parents.len()

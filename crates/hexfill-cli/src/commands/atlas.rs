@@ -142,7 +142,10 @@ pub(crate) fn run(args: &AtlasArgs, console: &Console, ctx: &Context<'_>) -> any
         }
         AtlasCommand::Lookup { surface, atlas } => {
             let read = atlas.as_deref().map(Atlas::read_path).transpose()?;
-            lookup(surface, read.as_ref().unwrap_or_else(|| Atlas::embedded()), console)
+            match &read {
+                Some(atlas) => lookup(surface, &[atlas], console),
+                None => lookup(surface, &[Atlas::fewest(), Atlas::embedded()], console),
+            }
         }
         AtlasCommand::Prune { file, output, max_quads, max_hexes, width } => {
             files::check_folder(output)?;
@@ -367,26 +370,29 @@ fn stats(atlas: &Atlas, console: &Console) -> anyhow::Result<Exit> {
     Ok(Exit::Done)
 }
 
-#[derive(Serialize)]
+#[derive(PartialEq, Serialize)]
 struct LookupRow {
     hexes: usize,
     interior_vertices: u32,
     blocked_pairs: u32,
 }
 
-fn lookup(surface: &str, atlas: &Atlas, console: &Console) -> anyhow::Result<Exit> {
+fn lookup(surface: &str, atlases: &[&Atlas], console: &Console) -> anyhow::Result<Exit> {
     let problem = files::load_problem(surface, &files::InputArgs::default())?;
     let Some((cavity, _)) = Cavity::from_surface(problem.surface()) else {
         bail!("{surface} is not one sphere of at most {MAX_QUADS} quads; the atlas knows no other surfaces");
     };
-    let rows: Vec<LookupRow> = atlas
-        .balls_for(&cavity)
+    let mut rows: Vec<LookupRow> = atlases
+        .iter()
+        .flat_map(|atlas| atlas.balls_for(&cavity))
         .map(|ball| LookupRow {
             hexes: ball.n_hexes(),
             interior_vertices: ball.n_vertices - cavity.n_vertices() as u32,
             blocked_pairs: ball.boundary.n_blocked(),
         })
         .collect();
+    rows.sort_by_key(|row| (row.hexes, row.interior_vertices, row.blocked_pairs));
+    rows.dedup();
     if console.json {
         console.print_json(&rows)?;
     } else if rows.is_empty() {

@@ -5,6 +5,7 @@ use crate::fill::error::FillError;
 use crate::fill::filled::{FillResult, Filled, Route};
 use crate::fill::judged::accept;
 use crate::fill::options::{FillOptions, Strategy};
+use hexfill_construct::CellChoice;
 use hexfill_mesh::{Context, HexMesh, QuadSurface, StopReason};
 use hexfill_search::{
     Atlas, Cavity, FillOptions as InwardOptions, GrowOptions, Growth, GrowthLog, MAX_CAP, fill_from_atlas,
@@ -17,7 +18,7 @@ pub(crate) fn search(
     ctx: &Context<'_>,
     result: &mut FillResult,
 ) -> Result<(), FillError> {
-    let atlas = options.atlas.as_deref().unwrap_or_else(|| Atlas::embedded());
+    let atlas = options.atlas.as_deref().unwrap_or_else(|| suited(surface, options));
     let inward = InwardOptions {
         max_hexes: options.max_hexes,
         // Several placements may be isomorphic as meshes: look for more than are asked for.
@@ -39,6 +40,15 @@ pub(crate) fn search(
         grow_towards(surface, options, ctx, result)?;
     }
     Ok(())
+}
+
+/// The atlas for a surface: the one with the fewest hexes if nothing will be embedded, or to look up what the other does not know.
+fn suited(surface: &QuadSurface, options: &FillOptions) -> &'static Atlas {
+    let (cavity, _) = Cavity::from_surface(surface).expect("the caller checked: a small sphere");
+    let knows = |atlas: &Atlas| atlas.balls_for(&cavity).next().is_some();
+    let wants_fewest = options.cells == CellChoice::Fewest && options.count == 1;
+    let is_unknown = || options.inward_cavities == 1 && !knows(Atlas::embedded());
+    if (wants_fewest || is_unknown()) && knows(Atlas::fewest()) { Atlas::fewest() } else { Atlas::embedded() }
 }
 
 /// Grows an atlas from one cube until the surface is reached.
