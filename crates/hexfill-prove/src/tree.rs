@@ -177,3 +177,76 @@ fn mix(x: u64) -> u64 {
     let x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     x ^ (x >> 31)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::symmetry::Symmetries;
+    use hexfill_mesh::cube::POSITIONS;
+    use hexfill_mesh::parse_surface_signature;
+    use hexfill_search::{Atlas, FillOptions, fill_from_atlas};
+
+    /// The 48 ways a cube lies on itself.
+    fn turns() -> Vec<[usize; 8]> {
+        let axes = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
+        let turned = |axes: [usize; 3], flip: usize| {
+            std::array::from_fn(|k| {
+                let at: [u8; 3] = std::array::from_fn(|i| POSITIONS[k][axes[i]] ^ (flip >> i & 1) as u8);
+                POSITIONS.iter().position(|p| *p == at).unwrap()
+            })
+        };
+        axes.into_iter().flat_map(|a| (0..8).map(move |flip| turned(a, flip))).collect()
+    }
+
+    /// The bounds and the choice of covers cut no way to a mesh that exists: along each known mesh the tree has a branch at every node, and one of
+    /// the branches is the mesh's own hex.
+    #[test]
+    fn the_way_to_a_known_mesh_is_never_cut() {
+        // The spindle, the pyramid, the geode, the buffer cube of 22 quads, and one hex more than there are.
+        for (signature, more) in [
+            ("Q1:00101005101312", 0),
+            ("Q1:000000070017100700171605141317", 0),
+            ("Q1:000000070017100700171605141317", 1),
+            ("Q1:0010000600100710071605051005142341", 0),
+            ("Q1:000000070017001700101010009gb1122007152451", 0),
+        ] {
+            let surface = parse_surface_signature(signature).unwrap();
+            let ctx = Context::default();
+            let made = fill_from_atlas(&surface, Atlas::embedded(), &FillOptions::default(), &ctx).unwrap();
+            let mesh = &made.fillings[0].mesh;
+            let action = Action::new(&Symmetries::of(&surface).unwrap(), 1);
+            let mut walker = Walker::new(State::new(&surface).unwrap(), action, mesh.n_hexes() + more);
+            let mut hexes = mesh.hexes_raw();
+            // Per vertex of the state, the vertex of the mesh.
+            let mut vertex: Vec<u32> = (0..surface.n_vertices() as u32).collect();
+            while !walker.is_finished() {
+                let branches = walker.branches();
+                let own = branches.iter().find_map(|cover| {
+                    hexes.iter().enumerate().find_map(|(h, hex)| {
+                        let fits = |turn: &[usize; 8]| {
+                            (0..8).all(|k| match vertex.get(usize::from(cover.hex[k])) {
+                                Some(&v) => v == hex[turn[k]],
+                                None => !vertex.contains(&hex[turn[k]]),
+                            })
+                        };
+                        turns().into_iter().find(fits).map(|turn| (*cover, h, turn))
+                    })
+                });
+                let (cover, h, turn) = own.unwrap_or_else(|| {
+                    panic!(
+                        "{signature}: {} hexes laid, {} branches, none of the mesh",
+                        walker.hexes().len(),
+                        branches.len()
+                    )
+                });
+                let hex = hexes.swap_remove(h);
+                assert!(walker.place(&cover), "{signature}: the mesh's own hex does not fit");
+                // New vertices are numbered as they come.
+                while let Some(k) = (0..8).find(|&k| usize::from(cover.hex[k]) == vertex.len()) {
+                    vertex.push(hex[turn[k]]);
+                }
+            }
+            assert!(hexes.is_empty() && walker.hexes().len() == mesh.n_hexes());
+        }
+    }
+}

@@ -2,7 +2,7 @@
 //! integers, and so are 8 times its Bernstein coefficients. The statement is about the stored numbers.
 
 use super::bernstein::{CORNERS, Cell, Vector, at, edge_corners};
-use super::positivity::Positivity;
+use super::verdict::Positivity;
 use dashu_int::IBig;
 
 /// Halvings after which a box is given up (20 along each axis).

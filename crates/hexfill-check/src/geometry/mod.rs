@@ -11,4 +11,5 @@ pub(crate) mod positions;
 pub(crate) mod positivity;
 pub(crate) mod quality;
 pub(crate) mod scaled;
+pub(crate) mod verdict;
 pub(crate) mod volume;

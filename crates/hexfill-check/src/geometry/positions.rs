@@ -1,7 +1,8 @@
 //! Level 4 as a whole, and level 5 for a range of hexes.
 
 use super::bernstein::Vector;
-use super::positivity::{Positivity, decide, surely_positive};
+use super::positivity::{decide, surely_positive};
+use super::verdict::Positivity;
 use crate::input::Judged;
 use crate::report::{Findings, Offender};
 use crate::rule::Rule;

@@ -3,19 +3,7 @@
 
 use super::bernstein::{CORNERS, Cell, ERROR, Frame, UNIT, Vector, halve};
 use super::exact;
-
-/// What is known about det J of a hex.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Positivity {
-    /// Positive everywhere.
-    Positive,
-    /// Negative at all eight corners.
-    InsideOut,
-    /// Zero or negative at a point of the unit cube.
-    NotPositive { at: Vector, zero: bool },
-    /// The depth limit was reached.
-    Undecided,
-}
+use super::verdict::Positivity;
 
 /// Boxes that floating-point bisection may visit before exact arithmetic takes over.
 const FLOAT_BOXES: usize = 200;

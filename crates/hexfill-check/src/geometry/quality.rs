@@ -1,8 +1,9 @@
 //! Quality numbers of hexes: scaled Jacobian at the corners, Verdict's, certified; condition number, edge ratio, volume.
 
 use super::bernstein::{CORNERS, Frame, Lengths, Vector, cross, dot, norm};
-use super::positivity::{Positivity, decide};
+use super::positivity::decide;
 use super::scaled::{Effort, Whole, least, normal_frame};
+use super::verdict::Positivity;
 use super::volume::Sum;
 use crate::input::Judged;
 use crate::parallel::{piece, tasks};
