@@ -73,7 +73,9 @@ pub(crate) fn atlas(py: Python<'_>, data: &Data, name: String, how: Run) -> PyRe
         let mut balls: Vec<_> =
             [Atlas::fewest(), Atlas::embedded()].iter().flat_map(|atlas| atlas.balls_for(&cavity)).collect();
         balls.sort_by_key(hexfill::unstable::search::Ball::n_hexes);
-        let rows: Vec<Value> = balls.iter().map(row).collect();
+        // Both atlases may hold the same numbers.
+        let mut rows: Vec<Value> = balls.iter().map(row).collect();
+        rows.dedup();
         Ok(json!(rows).to_string())
     })?;
     Ok(text)
