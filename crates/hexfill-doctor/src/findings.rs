@@ -235,7 +235,7 @@ fn edges_and_vertices(soup: &Soup, error: &SurfaceError) -> Vec<Finding> {
     .flatten()
     .collect();
     let other = match error {
-        SurfaceError::Empty => Some(("empty", "give at least 6 quads")),
+        SurfaceError::Empty => Some(("empty", "see whether it is the right file")),
         SurfaceError::NonManifoldVertices { .. } => Some(("non-manifold-vertices", "")),
         SurfaceError::NotOrientable { .. } => Some(("not-orientable", "")),
         SurfaceError::IndexOutOfRange { .. } => Some(("index-out-of-range", "")),
