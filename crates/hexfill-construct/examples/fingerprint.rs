@@ -102,7 +102,7 @@ fn tube(n: u32, m: u32, i_is_tube: bool) -> Option<(QuadSurface, Points)> {
 
 /// A quad more: two quads at an edge become three round a new vertex in its middle.
 fn one_more((surface, mut points): (QuadSurface, Points)) -> Option<(QuadSurface, Points)> {
-    let mut quads: Vec<[u32; 4]> = surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
+    let mut quads: Vec<[u32; 4]> = surface.quads_raw();
     let d = surface.darts().find(|&d| [surface.origin(d), surface.target(d)].iter().all(|&v| surface.degree(v) > 3))?;
     let t = surface.twin(d);
     let [b, e] = [surface.origin(d).0, surface.target(d).0];

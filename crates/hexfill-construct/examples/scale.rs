@@ -21,7 +21,7 @@ fn run(name: &str, surface: &QuadSurface, points: Option<&[[f64; 3]]>) {
     };
     let construct_time = start.elapsed();
     let hexes: Vec<[u32; 8]> = made.mesh.hexes().iter().map(|h| h.map(|v| v.0)).collect();
-    let quads: Vec<[u32; 4]> = surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
+    let quads: Vec<[u32; 4]> = surface.quads_raw();
     let n_vertices = made.mesh.n_vertices();
     let (n, per_quad, unmatched) = (hexes.len(), made.report.hexes_per_quad(), made.report.n_unmatched);
     drop(made);

@@ -14,7 +14,7 @@ fn fill(text: &str, n_quads: usize, genus: u64) -> f64 {
     let made = construct(&surface, Some(&points), &ConstructOptions::default(), &Context::default()).unwrap();
     println!("{}", made.report);
     let hexes: Vec<[u32; 8]> = made.mesh.hexes().iter().map(|h| h.map(|v| v.0)).collect();
-    let quads: Vec<[u32; 4]> = surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
+    let quads: Vec<[u32; 4]> = surface.quads_raw();
     let input = Judged::connectivity(made.mesh.n_vertices(), &hexes).with_surface(&quads);
     let report = judge(&input, &hexfill_check::Options::default().up_to(Level::L3).betti(false), &Context::default());
     assert!(report.passed(Level::L3), "{:?}", report.failures);

@@ -10,7 +10,7 @@ use hexfill_mesh::{Context, QuadSurface};
 
 fn check(surface: &QuadSurface, made: &Construction) {
     let hexes: Vec<[u32; 8]> = made.mesh.hexes().iter().map(|h| h.map(|v| v.0)).collect();
-    let quads: Vec<[u32; 4]> = surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
+    let quads: Vec<[u32; 4]> = surface.quads_raw();
     let input = Judged::connectivity(made.mesh.n_vertices(), &hexes).with_surface(&quads);
     let report = judge(&input, &hexfill_check::Options::default().up_to(Level::L3), &Context::default());
     assert!(report.passed(Level::L3), "{:?}", report.failures);

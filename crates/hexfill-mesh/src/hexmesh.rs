@@ -187,6 +187,11 @@ impl HexMesh {
         self.boundary_facets().map(|f| self.facet_vertices(f)).collect()
     }
 
+    /// [`Self::boundary_quads`] as plain arrays, for writers and foreign code.
+    pub fn boundary_quads_raw(&self) -> Vec<[u32; 4]> {
+        self.boundary_quads().into_iter().map(|q| q.map(|v| v.0)).collect()
+    }
+
     /// Per vertex: whether it lies on a boundary quad.
     pub fn boundary_vertices(&self) -> Vec<bool> {
         let mut on = vec![false; self.n_vertices];

@@ -99,7 +99,7 @@ mod tests {
 
     /// The cube with one quad replaced by two quads round a new vertex of degree 2.
     pub(crate) fn two_valent() -> QuadSurface {
-        let mut quads: Vec<[u32; 4]> = cube_surface().quads().iter().map(|q| q.map(|v| v.0)).collect();
+        let mut quads: Vec<[u32; 4]> = cube_surface().quads_raw();
         let [a, b, c, d] = quads.pop().unwrap();
         quads.extend([[a, b, c, 8], [a, 8, c, d]]);
         QuadSurface::try_new(9, &quads).unwrap()

@@ -182,7 +182,7 @@ mod tests {
         let all = sheets(mesh);
         assert_eq!(all.iter().map(|s| s.crossings.len()).sum::<usize>(), 3 * mesh.n_hexes());
         assert_eq!(all.iter().map(|s| s.n_edges).sum::<usize>(), mesh.edges().len());
-        let quads: Vec<[u32; 4]> = mesh.boundary_quads().iter().map(|q| q.map(|v| v.0)).collect();
+        let quads: Vec<[u32; 4]> = mesh.boundary_quads_raw();
         if !quads.is_empty() {
             let surface = QuadSurface::try_new(mesh.n_vertices(), &quads).unwrap();
             assert!(surface.reversed().is_empty());

@@ -205,7 +205,7 @@ fn check(mesh: &HexMesh, seed: u64) {
 
 /// The boundary as a surface with the vertex ids of the mesh, if it is one.
 fn boundary(mesh: &HexMesh) -> Option<QuadSurface> {
-    let quads: Vec<[u32; 4]> = mesh.boundary_quads().iter().map(|q| q.map(|v| v.0)).collect();
+    let quads: Vec<[u32; 4]> = mesh.boundary_quads_raw();
     QuadSurface::try_new(mesh.n_vertices(), &quads).ok()
 }
 

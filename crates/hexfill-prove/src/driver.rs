@@ -121,6 +121,18 @@ pub struct Searched {
     pub cpu_nanoseconds: u64,
 }
 
+impl Searched {
+    /// Adds up what a ledger holds.
+    fn add<'r>(&mut self, records: impl Iterator<Item = &'r Record>, plan: &Plan) -> Result<(), ProveError> {
+        for record in records {
+            self.outcome.merge(record.outcome(plan)?);
+            self.cpu_nanoseconds += record.cpu_nanoseconds;
+            self.done += 1;
+        }
+        Ok(())
+    }
+}
+
 /// Runs chunks on threads; `done` gets each as it is finished, one call at a time, in any order.
 fn run_chunks(
     plan: &Plan,
@@ -190,11 +202,7 @@ pub fn search(
     run_chunks(plan, &left, threads, ctx, &mut |chunk, nanoseconds, outcome| {
         Ok(ledger.append(Record::new(chunk, nanoseconds, &outcome), None)?)
     })?;
-    for record in ledger.records().values() {
-        out.outcome.merge(record.outcome(plan)?);
-        out.cpu_nanoseconds += record.cpu_nanoseconds;
-    }
-    out.done = ledger.records().len();
+    out.add(ledger.records().values(), plan)?;
     Ok(out)
 }
 
@@ -208,12 +216,8 @@ pub fn merge(plan: &Plan, folder: &Path) -> Result<Searched, ProveError> {
     if !differences.is_empty() {
         return Err(hexfill_ledger::LedgerError::OtherParameters { path: folder.into(), differences }.into());
     }
-    let mut out = Searched { chunks: merged.header.chunks, done: merged.records.len(), ..Searched::default() };
-    out.found_done = out.done;
-    for record in merged.records.values() {
-        out.outcome.merge(record.outcome(plan)?);
-        out.cpu_nanoseconds += record.cpu_nanoseconds;
-    }
+    let mut out = Searched { chunks: merged.header.chunks, found_done: merged.records.len(), ..Searched::default() };
+    out.add(merged.records.values(), plan)?;
     Ok(out)
 }
 

@@ -30,7 +30,7 @@ const PINCHED: [Rule; 3] = [Rule::VertexPinched, Rule::VertexLinkNotDisk, Rule::
 /// # Errors
 /// [`ProveError::Refused`] if it breaks another rule: the search was wrong.
 pub(crate) fn signature_of(surface: &QuadSurface, mesh: &Mesh) -> Result<Option<String>, ProveError> {
-    let quads: Vec<[u32; 4]> = surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
+    let quads: Vec<[u32; 4]> = surface.quads_raw();
     let options = Options::default().up_to(Level::L3).parts(Parts::One);
     let judged = Judged::connectivity(mesh.n_vertices, &mesh.hexes).with_surface(&quads);
     let report = judge(&judged, &options, &Context::default());

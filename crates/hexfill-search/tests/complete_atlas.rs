@@ -21,7 +21,7 @@ fn hexes_of_judged_filling(surface: &QuadSurface) -> Option<u64> {
     let boundary_ids: Vec<u32> = map.iter().map(|&v| ids[usize::from(v)]).collect();
     let first_new = surface.n_vertices() as u32;
     let (hexes, fresh) = ball.hexes_in(&boundary_ids, mirrored, first_new);
-    let quads: Vec<[u32; 4]> = surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
+    let quads: Vec<[u32; 4]> = surface.quads_raw();
     let judged = Judged::connectivity((first_new + fresh) as usize, &hexes).with_surface(&quads);
     let report = judge(&judged, &Options::default().up_to(Level::L3), &Context::default());
     assert!(report.passed(Level::L3), "{report}");

@@ -74,7 +74,7 @@ fn main() {
         let time = start.elapsed().as_secs_f64();
         let mut verdict = "open";
         if swept.front.is_empty() {
-            let quads: Vec<[u32; 4]> = surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
+            let quads: Vec<[u32; 4]> = surface.quads_raw();
             let input = Judged::connectivity(swept.n_vertices as usize, &swept.hexes).with_surface(&quads);
             let options = hexfill_check::Options::default().up_to(Level::L3);
             verdict =

@@ -80,7 +80,7 @@ pub(crate) fn between(surface: &QuadSurface, points: &[[f64; 3]]) -> Option<Vec<
             hexes.push([a, b, c, d, e, f, g, h]);
         }
     }
-    let quads: Vec<[u32; 4]> = surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
+    let quads: Vec<[u32; 4]> = surface.quads_raw();
     Front::try_from_parts(n + (layers - 1) * columns.len() as u32, &quads, &hexes, &[]).ok()?;
     Some(hexes)
 }
@@ -128,7 +128,7 @@ mod tests {
         };
         let mut all = points.clone();
         all.extend(points.iter().map(|&p| [0, 1, 2].map(|k| 0.25 * p[k] + 0.75 * axis(p)[k])));
-        let mut quads: Vec<[u32; 4]> = torus.quads().iter().map(|q| q.map(|v| v.0)).collect();
+        let mut quads: Vec<[u32; 4]> = torus.quads_raw();
         quads.extend(torus.inverted().quads().iter().map(|q| q.map(|v| v.0 + n)));
         let hollow = QuadSurface::try_new(all.len(), &quads).unwrap();
         let hexes = between(&hollow, &all).unwrap();

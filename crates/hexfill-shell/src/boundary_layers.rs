@@ -193,7 +193,7 @@ mod tests {
             assert_eq!(&at[..surface.n_vertices()], &points[..surface.n_vertices()]);
             assert!(at.iter().flatten().all(|x| x.is_finite()));
             let hexes = cut.hexes_raw();
-            let quads: Vec<[u32; 4]> = surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
+            let quads: Vec<[u32; 4]> = surface.quads_raw();
             let judged = hexfill_check::Judged::connectivity(cut.n_vertices(), &hexes).with_surface(&quads);
             let options = hexfill_check::Options::default().up_to(hexfill_check::Level::L3);
             assert!(hexfill_check::judge(&judged, &options, &Context::default()).passed(hexfill_check::Level::L3));

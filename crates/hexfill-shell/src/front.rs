@@ -73,7 +73,7 @@ impl Front {
     /// # Errors
     /// [`FrontError::Improper`] if quads of the surface meet improperly.
     pub fn new(surface: &QuadSurface) -> Result<Self, FrontError> {
-        let quads: Vec<[u32; 4]> = surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
+        let quads: Vec<[u32; 4]> = surface.quads_raw();
         let state = Self::try_from_parts(surface.n_vertices() as u32, &quads, &[], &quads)?;
         Ok(Self { n_kept: surface.n_vertices() as u32, ..state })
     }

@@ -29,7 +29,7 @@ struct Cells {
 pub(crate) fn polycube(surface: &QuadSurface, development: &Development) -> Option<Vec<[u32; 8]>> {
     let hexes = Cells::of(surface, development)?.hexes(surface, development)?;
     let n_vertices = hexes.iter().flatten().max().map_or(0, |v| v + 1).max(surface.n_vertices() as u32);
-    let quads: Vec<[u32; 4]> = surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
+    let quads: Vec<[u32; 4]> = surface.quads_raw();
     Front::try_from_parts(n_vertices, &quads, &hexes, &[]).ok()?;
     Some(hexes)
 }

@@ -66,18 +66,6 @@ pub struct Shelling {
     pub left: usize,
 }
 
-impl std::fmt::Display for Shelling {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "shelling from {} coarse quads: ", self.coarse_quads)?;
-        match (self.meshes.len(), self.left) {
-            (0, usize::MAX) => write!(f, "stopped"),
-            (0, 0) => write!(f, "nothing that lifts"),
-            (0, left) => write!(f, "{left} quads left"),
-            (n, _) => write!(f, "{n} meshes"),
-        }
-    }
-}
-
 /// Restarts times the square of the quads: what layers may cost.
 const RESTART_WORK: u64 = 4_000_000;
 /// Restarts at least, unless fewer are asked for.
@@ -264,7 +252,7 @@ impl<'a> Start<'a> {
             void.pillow();
         }
         let n_pillows = void.hexes.len();
-        Self { coarse, n_pillows, void, quads: coarse.surface.quads().iter().map(|q| q.map(|v| v.0)).collect() }
+        Self { coarse, n_pillows, void, quads: coarse.surface.quads_raw() }
     }
 
     /// This start with all cavities joined to the outside and all handles cut; `None` if one is not. `points` are those of the surface,

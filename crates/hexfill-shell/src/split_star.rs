@@ -96,7 +96,7 @@ pub fn split_stars(
     options: &SplitOptions,
     context: &Context<'_>,
 ) -> Option<SplitStars> {
-    let quads: Vec<[u32; 4]> = mesh.boundary_quads().iter().map(|q| q.map(|v| v.0)).collect();
+    let quads: Vec<[u32; 4]> = mesh.boundary_quads_raw();
     let surface = QuadSurface::try_new(mesh.n_vertices(), &quads).ok().filter(|s| s.reversed().is_empty())?;
     let placed = |v: &VertexId| points.get(v.index()).is_some_and(|p| p.iter().all(|x| x.is_finite()));
     if !surface.quads().iter().flatten().all(placed) {

@@ -45,7 +45,7 @@ pub fn sweep(
     let start = (surface.n_components() == 1 || points.is_some_and(|p| all_face_outward(surface, p)))
         .then(|| Front::new(surface));
     let Some(Ok(mut front)) = start else {
-        let front = surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
+        let front = surface.quads_raw();
         return Swept { n_vertices: surface.n_vertices() as u32, hexes: Vec::new(), front, stopped: None };
     };
     let mut base: Vec<u32> = (0..surface.n_vertices() as u32).collect();

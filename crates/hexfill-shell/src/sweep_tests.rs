@@ -33,7 +33,7 @@ fn handles_are_plugged() {
 
 /// The state that a result describes, checked.
 fn checked(surface: &QuadSurface, swept: &Swept) -> Front {
-    let quads: Vec<[u32; 4]> = surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
+    let quads: Vec<[u32; 4]> = surface.quads_raw();
     let state = Front::try_from_parts(swept.n_vertices, &quads, &swept.hexes, &swept.front).unwrap();
     state.debug_check();
     state

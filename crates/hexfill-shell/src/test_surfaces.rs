@@ -17,7 +17,7 @@ pub(crate) fn torus_at(n: u32, m: u32) -> (QuadSurface, Vec<[f64; 3]>) {
         }
     }
     let surface = torus(m, n, 0).unwrap();
-    let quads: Vec<[u32; 4]> = surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
+    let quads: Vec<[u32; 4]> = surface.quads_raw();
     let inside = crate::inside::winding_number(&quads, &points, [3.0, 0.0, 0.0]);
     (if inside > 0.0 { surface } else { surface.inverted() }, points)
 }
@@ -31,7 +31,7 @@ pub(crate) fn read_obj(text: &str) -> (QuadSurface, Vec<[f64; 3]>) {
 /// Judges a complete filling with levels 1 to 3 and its Euler characteristic, half that of its boundary; the number of hexes.
 pub(crate) fn judged(surface: &QuadSurface, swept: &Swept) -> usize {
     assert_eq!(swept.front.len(), 0, "complete");
-    let quads: Vec<[u32; 4]> = surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
+    let quads: Vec<[u32; 4]> = surface.quads_raw();
     let input = Judged::connectivity(swept.n_vertices as usize, &swept.hexes).with_surface(&quads);
     let options = hexfill_check::Options::default().up_to(Level::L3);
     let report = judge(&input, &options, &Context::default());

@@ -44,7 +44,7 @@ impl Void {
     /// Nothing glued yet.
     pub(crate) fn new(coarse: &Coarse) -> Self {
         let surface = &coarse.surface;
-        let quads: Vec<[u32; 4]> = surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
+        let quads: Vec<[u32; 4]> = surface.quads_raw();
         let mut pairs = PairTable::default();
         for quad in &quads {
             pairs.add_quad(quad);

@@ -37,7 +37,7 @@ impl Gallery {
         let (measures, boundary) = (shape(&complex), Boundary::of(&complex));
         let mesh = complex.to_hex_mesh().ok();
         let surface = mesh.as_ref().and_then(|mesh| {
-            let quads: Vec<[u32; 4]> = mesh.boundary_quads().iter().map(|q| q.map(|v| v.0)).collect();
+            let quads: Vec<[u32; 4]> = mesh.boundary_quads_raw();
             QuadSurface::try_new(mesh.n_vertices(), &quads).ok()
         });
         let instead = match &surface {

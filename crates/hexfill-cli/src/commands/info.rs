@@ -168,7 +168,7 @@ fn mesh_info(args: &InfoArgs, data: &MeshData, console: &Console) -> anyhow::Res
     }
     if let Some(file) = &args.svg {
         let mesh = data.hex_mesh()?;
-        let quads: Vec<[u32; 4]> = mesh.boundary_quads().iter().map(|q| q.map(|v| v.0)).collect();
+        let quads: Vec<[u32; 4]> = mesh.boundary_quads_raw();
         draw_chords(file, &QuadSurface::try_new(mesh.n_vertices(), &quads)?, &args.input, console)?;
     }
     Ok(Exit::Done)

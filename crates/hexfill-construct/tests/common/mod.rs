@@ -11,7 +11,7 @@ pub(crate) type Points = Vec<[f64; 3]>;
 /// Levels 1 to 3, the Euler characteristic of a handlebody with cavities (half that of its boundary), and that nothing is unused.
 pub(crate) fn check(surface: &QuadSurface, made: &Construction) {
     let hexes: Vec<[u32; 8]> = made.mesh.hexes().iter().map(|h| h.map(|v| v.0)).collect();
-    let quads: Vec<[u32; 4]> = surface.quads().iter().map(|q| q.map(|v| v.0)).collect();
+    let quads: Vec<[u32; 4]> = surface.quads_raw();
     let input = Judged::connectivity(made.mesh.n_vertices(), &hexes).with_surface(&quads);
     let report = judge(&input, &hexfill_check::Options::default().up_to(Level::L3).betti(false), &Context::default());
     assert!(report.passed(Level::L3), "{:?}", report.failures);
@@ -100,7 +100,7 @@ pub(crate) fn together(parts: &[(QuadSurface, Points)]) -> (QuadSurface, Points)
 
 /// The same surface with one quad more: quads `a b e f` and `b c d e` at an edge become three round a new vertex in its middle.
 pub(crate) fn one_more((surface, points): (QuadSurface, Points)) -> (QuadSurface, Points) {
-    let (mut quads, mut points) = (surface.quads().iter().map(|q| q.map(|v| v.0)).collect::<Vec<_>>(), points);
+    let (mut quads, mut points) = (surface.quads_raw(), points);
     let d = surface
         .darts()
         .find(|&d| [surface.origin(d), surface.target(d)].iter().all(|&v| surface.degree(v) > 3))

@@ -188,7 +188,7 @@ mod tests {
     fn refined_cubes() {
         for n in [2usize, 4] {
             let mesh = crate::problem::samples::grid(n);
-            let quads: Vec<[u32; 4]> = mesh.boundary_quads().iter().map(|q| q.map(|v| v.0)).collect();
+            let quads: Vec<[u32; 4]> = mesh.boundary_quads_raw();
             let s = surface(mesh.n_vertices(), &quads);
             // Unused ids (the interior vertices of the grid) get the origin; leave them out of the convexity check.
             let (part, _, _) = s.split_components().remove(0);

@@ -19,7 +19,7 @@ fn pillowed(mesh: &HexMesh) -> HexMesh {
 }
 
 fn quads_of(mesh: &HexMesh) -> Vec<[u32; 4]> {
-    mesh.boundary_quads().iter().map(|q| q.map(|v| v.0)).collect()
+    mesh.boundary_quads_raw()
 }
 
 /// Four cubes of 2 x 2 x 2 in a chain round their common point, each cut into n^3: the faces at that point look both ways along

@@ -248,7 +248,7 @@ mod tests {
             })
             .collect();
         let mesh = HexMesh::try_new(points.len(), &hexes).unwrap();
-        let quads: Vec<[u32; 4]> = mesh.boundary_quads().iter().map(|q| q.map(|v| v.0)).collect();
+        let quads: Vec<[u32; 4]> = mesh.boundary_quads_raw();
         let surface = QuadSurface::try_new(points.len(), &quads).unwrap();
         (Stage { hexes, points, bad: vec![0], score: 0.0 }, surface)
     }

@@ -51,7 +51,7 @@ pub struct SheetInfo {
 /// [`HexMeshError`] if they do not glue.
 pub fn describe_mesh(data: &MeshData) -> Result<MeshInfo, HexMeshError> {
     let mesh = data.hex_mesh()?;
-    let quads: Vec<[u32; 4]> = mesh.boundary_quads().iter().map(|q| q.map(|v| v.0)).collect();
+    let quads: Vec<[u32; 4]> = mesh.boundary_quads_raw();
     let boundary = QuadSurface::try_new(mesh.n_vertices(), &quads).ok();
     Ok(MeshInfo {
         kind: "mesh",
