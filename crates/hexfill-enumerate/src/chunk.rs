@@ -14,8 +14,6 @@ use crate::tally::Tally;
 use crate::targets::{Found, Wanted};
 use hexfill_ledger::CpuClock;
 use hexfill_mesh::Context;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 pub use hexfill_ledger::Chunk;
 
@@ -165,24 +163,6 @@ impl Plan {
         ctx: &Context<'_>,
         done: &mut (dyn FnMut(ChunkResult) -> Result<(), EnumerateError> + Send),
     ) -> Result<(), EnumerateError> {
-        let cursor = AtomicUsize::new(0);
-        let done = Mutex::new((done, 0u64));
-        crate::level::run_on(threads, &|| {
-            loop {
-                let at = cursor.fetch_add(1, Ordering::Relaxed);
-                let Some(&chunk) = chunks.get(at) else { return Ok(()) };
-                let result = self.run(chunk, wanted, ctx).and_then(|result| {
-                    let mut guard = done.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-                    guard.1 += 1;
-                    ctx.report("chunks", guard.1, Some(chunks.len() as u64), String::new);
-                    (guard.0)(result)
-                });
-                if result.is_err() {
-                    // The other threads end after the chunk they are in.
-                    cursor.store(chunks.len(), Ordering::Relaxed);
-                    return result;
-                }
-            }
-        })
+        hexfill_ledger::run_chunks(chunks, threads, ctx, &|chunk| self.run(chunk, wanted, ctx), done)
     }
 }

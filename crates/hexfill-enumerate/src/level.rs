@@ -168,7 +168,7 @@ fn grow<K: HashKey>(
         parts.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push((counter.finish(), codes, found));
         Ok(())
     };
-    run_on(options.threads, &work)?;
+    hexfill_ledger::run_on(options.threads, &work)?;
     let mut level =
         Level { cubes, tally: Tally::default(), codes: Vec::new(), found: Found::default(), set_bytes: set.bytes() };
     for (tally, codes, found) in parts.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner) {
@@ -179,22 +179,4 @@ fn grow<K: HashKey>(
     level.codes.sort_unstable();
     level.found.sort();
     Ok(level)
-}
-
-/// Runs the same work on several threads and returns the first error.
-pub(crate) fn run_on<E: Send>(threads: usize, work: &(dyn Fn() -> Result<(), E> + Sync)) -> Result<(), E> {
-    if threads <= 1 {
-        return work();
-    }
-    std::thread::scope(|scope| {
-        let handles: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
-        let mut out = Ok(());
-        for handle in handles {
-            match handle.join() {
-                Ok(result) => out = out.and(result),
-                Err(panic) => std::panic::resume_unwind(panic),
-            }
-        }
-        out
-    })
 }

@@ -9,8 +9,10 @@ mod chunk;
 mod error;
 mod ledger;
 mod merged;
+mod threads;
 
 pub use chunk::{Chunk, CpuClock, chunks_of_part, default_chunks, mixed_order};
 pub use error::LedgerError;
 pub use ledger::{Header, Ledger, Record, ledger_path, objects_path, read_ledger};
 pub use merged::{Merged, merge, read_ledgers};
+pub use threads::{run_chunks, run_on};

@@ -46,7 +46,7 @@ pub use improper::{ImproperPair, improper_pairs, is_proper, is_three_connected};
 pub use key::{Key, KeyError, key, key_of_chords};
 pub use random::Random;
 pub use sheets::{Sheet, sheets};
-pub use shelling::{greedy_shelling, is_shelling};
+pub use shelling::{greedy_shelling, is_shellable, is_shelling};
 pub use signature_text::SignatureError;
 pub use surface::{FaceSides, QuadSurface, SurfaceError};
 pub use surface_signature::{

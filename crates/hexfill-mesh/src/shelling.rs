@@ -9,7 +9,7 @@
 use crate::cube::{EDGES, FACETS};
 use crate::hexmesh::{Facet, HexMesh};
 use crate::ids::HexId;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeSet;
 
 /// A shelling order of a mesh, if the greedy search finds one: each hex meets the earlier ones in a disk (the last hex of a closed mesh in a sphere).
@@ -39,6 +39,15 @@ pub fn is_shelling(mesh: &HexMesh, order: &[HexId]) -> bool {
         }
         fits
     })
+}
+
+/// Whether a mesh of at most 128 hexes has a shelling, decided by trying every order, dead ends remembered. `false` for more hexes. Exponential time at
+/// worst; see [`greedy_shelling`] for an order of large meshes.
+pub fn is_shellable(mesh: &HexMesh) -> bool {
+    let n = mesh.n_hexes();
+    let shelling = Shelling::new(mesh);
+    let mut dead = FxHashSet::default();
+    n <= 128 && (0..n).any(|h| State::new(&shelling).with(HexId::new(h)).can_be_finished(1 << h, &mut dead))
 }
 
 /// Incidences that do not change while hexes are added.
@@ -116,6 +125,7 @@ impl<'a> Shelling<'a> {
 }
 
 /// What has been added.
+#[derive(Clone)]
 struct State<'a> {
     shelling: &'a Shelling<'a>,
     added: Vec<bool>,
@@ -141,6 +151,26 @@ impl<'a> State<'a> {
         for e in self.shelling.edges[h.index()] {
             self.on_edge[e as usize] = true;
         }
+    }
+
+    fn with(mut self, h: HexId) -> Self {
+        self.add(h);
+        self
+    }
+
+    /// Whether the hexes added, a bit each in `built`, can be continued to the whole mesh; sets for which that failed join `dead`.
+    fn can_be_finished(&self, built: u128, dead: &mut FxHashSet<u128>) -> bool {
+        let n = self.added.len();
+        let n_built = built.count_ones() as usize;
+        if n_built == n {
+            return true;
+        }
+        dead.insert(built)
+            && (0..n).filter(|&h| !self.added[h]).any(|h| {
+                let next = HexId::new(h);
+                self.shared_facets(next, n_built + 1 == n).is_some()
+                    && self.clone().with(next).can_be_finished(built | 1 << h, dead)
+            })
     }
 
     /// The number of facets hex `h` shares with the added hexes, if it may be added.
@@ -214,6 +244,14 @@ mod tests {
         assert!(greedy_shelling(&grid_mesh_of([3, 3, 3], |p| p != [1, 1, 1]).unwrap()).is_none());
         assert!(greedy_shelling(&grid_mesh_of([3, 1, 1], |p| p[0] != 1).unwrap()).is_none());
         assert!(greedy_shelling(&grid(0, 1, 1).unwrap()).is_none());
+    }
+
+    #[test]
+    fn a_row_is_shellable_and_a_ring_with_its_core_missing_is_not() {
+        assert!(is_shellable(&grid(1, 1, 2).unwrap()));
+        assert!(is_shellable(&grid(3, 2, 2).unwrap()));
+        // Eight cubes round a missing ninth.
+        assert!(!is_shellable(&grid_mesh_of([3, 3, 1], |[x, y, _]| (x, y) != (1, 1)).unwrap()));
     }
 
     #[test]

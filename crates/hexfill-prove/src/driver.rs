@@ -7,8 +7,6 @@ use hexfill_ledger::{Chunk, CpuClock, Header as _, Ledger, Merged, chunks_of_par
 use hexfill_mesh::Context;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Version of the ledger's format and of the tree: sums of two versions do not compare.
 const FORMAT: u32 = 1;
@@ -133,39 +131,23 @@ impl Searched {
     }
 }
 
+/// A chunk searched: which, its processor time in nanoseconds, what was found.
+type Done = (Chunk, u64, Outcome);
+
 /// Runs chunks on threads; `done` gets each as it is finished, one call at a time, in any order.
 fn run_chunks(
     plan: &Plan,
     chunks: &[Chunk],
     threads: usize,
     ctx: &Context<'_>,
-    done: &mut (dyn FnMut(Chunk, u64, Outcome) -> Result<(), ProveError> + Send),
+    done: &mut (dyn FnMut(Done) -> Result<(), ProveError> + Send),
 ) -> Result<(), ProveError> {
-    let cursor = AtomicUsize::new(0);
-    let shared = Mutex::new((done, Ok(()), 0u64));
-    let work = || {
-        while let Some(&chunk) = chunks.get(cursor.fetch_add(1, Ordering::Relaxed)) {
-            let clock = CpuClock::start();
-            let result = plan.run(chunk, ctx);
-            let mut guard = shared.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-            let result = result.and_then(|outcome| (guard.0)(chunk, clock.elapsed(), outcome));
-            guard.2 += 1;
-            ctx.report("chunks", guard.2, Some(chunks.len() as u64), String::new);
-            if let Err(error) = result {
-                // The other threads end after the chunk they are in.
-                cursor.store(chunks.len(), Ordering::Relaxed);
-                if guard.1.is_ok() {
-                    guard.1 = Err(error);
-                }
-            }
-        }
+    let run = |chunk| {
+        let clock = CpuClock::start();
+        let outcome = plan.run(chunk, ctx)?;
+        Ok((chunk, clock.elapsed(), outcome))
     };
-    std::thread::scope(|scope| {
-        for _ in 0..threads.max(1) {
-            scope.spawn(work);
-        }
-    });
-    shared.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner).1
+    hexfill_ledger::run_chunks(chunks, threads, ctx, &run, done)
 }
 
 /// Searches one part of the chunks, or all. With a folder, finished chunks are kept there: the same call goes on where a killed run
@@ -185,7 +167,7 @@ pub fn search(
     let mut out = Searched { chunks: left.len(), ..Searched::default() };
     let Some(folder) = folder else {
         let (sum, cpu) = (&mut out.outcome, &mut out.cpu_nanoseconds);
-        run_chunks(plan, &left, threads, ctx, &mut |_, nanoseconds, outcome| {
+        run_chunks(plan, &left, threads, ctx, &mut |(_, nanoseconds, outcome)| {
             sum.merge(outcome);
             *cpu += nanoseconds;
             Ok(())
@@ -199,7 +181,7 @@ pub fn search(
     out.dropped_bytes = ledger.dropped_bytes;
     left.retain(|c| !ledger.records().contains_key(&c.index));
     mixed_order(&mut left);
-    run_chunks(plan, &left, threads, ctx, &mut |chunk, nanoseconds, outcome| {
+    run_chunks(plan, &left, threads, ctx, &mut |(chunk, nanoseconds, outcome)| {
         Ok(ledger.append(Record::new(chunk, nanoseconds, &outcome), None)?)
     })?;
     out.add(ledger.records().values(), plan)?;

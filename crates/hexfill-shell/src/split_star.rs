@@ -15,12 +15,11 @@
 //!
 //! Invariant: boundary quads and the ids of their vertices never change; new vertices follow the old ones.
 
-mod cells;
 mod choose;
 #[cfg(test)]
 mod tests;
 
-use cells::Cells;
+use crate::cells::{self, Cells};
 use choose::{Choice, Chooser};
 use hexfill_mesh::{Context, HexMesh, QuadSurface, VertexId};
 

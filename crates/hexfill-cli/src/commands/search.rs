@@ -5,10 +5,9 @@ use crate::console::Console;
 use crate::exit::Exit;
 use crate::files;
 use anyhow::bail;
-use hexfill::mesh::HexMesh;
-use hexfill::mesh::hex_signature;
+use hexfill::mesh::{HexMesh, hex_signature, is_shellable};
 use hexfill::unstable::ledger::{Chunk, default_chunks};
-use hexfill::unstable::prove::{Mesh, Plan, Problem, ProveError, Searched, Subgroup, is_shellable, merge, search};
+use hexfill::unstable::prove::{Mesh, Plan, Problem, ProveError, Searched, Subgroup, merge, search};
 use hexfill::{Context, StopReason};
 use serde_json::json;
 use std::collections::BTreeMap;
@@ -174,8 +173,9 @@ impl<'a> Answer<'a> {
         let mut meshes = Vec::new();
         for mesh in searched.outcome.meshes.values() {
             let mesh = plan.problem().in_input_ids(mesh);
-            if !question.args.shellable || is_shellable(&mesh) {
-                meshes.push((hex_signature(&HexMesh::try_new(mesh.n_vertices, &mesh.hexes)?)?, mesh));
+            let glued = HexMesh::try_new(mesh.n_vertices, &mesh.hexes)?;
+            if !question.args.shellable || is_shellable(&glued) {
+                meshes.push((hex_signature(&glued)?, mesh));
             }
         }
         meshes.sort_by(|(a, x), (b, y)| (x.hexes.len(), a).cmp(&(y.hexes.len(), b)));

@@ -6,7 +6,7 @@
 //! that was fine below the limit, nor a poor one further down.
 
 use super::SplitOptions;
-use super::cells::{Cells, is_sphere};
+use crate::cells::{Cells, is_sphere};
 use hexfill_geometry::{Ray, Vector, best_direction, climb_star, cross, direction, star_bound};
 use hexfill_mesh::{Dart, QuadSurface};
 use rayon::prelude::*;

@@ -1,8 +1,8 @@
 //! Splits on voxel solids and spheres with vertices no direction serves, judged and embedded.
 
-use super::cells::Cells;
 use super::choose::Chooser;
 use super::{Layer, SplitOptions, SplitStars, split_stars};
+use crate::cells::Cells;
 use hexfill_check::{Judged, Level, Options, judge};
 use hexfill_embed::{Embedding, Objective, embed};
 use hexfill_mesh::generate::{grid, grid_mesh_of};

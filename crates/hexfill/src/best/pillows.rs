@@ -8,10 +8,10 @@
 
 use hexfill_embed::untangle_near;
 use hexfill_geometry::{Vector, cross, dot, norm, sub};
-use hexfill_mesh::cube::{CORNER_NEIGHBOURS, FACETS};
+use hexfill_mesh::cube::CORNER_NEIGHBOURS;
 use hexfill_mesh::{Context, HexMesh, QuadSurface, Random, StopReason};
+use hexfill_shell::{Pillowed, pillow};
 use rayon::prelude::*;
-use std::collections::BTreeMap;
 
 /// How far to go.
 #[derive(Clone, Copy, Debug)]
@@ -153,31 +153,14 @@ impl Stage {
 
     /// A pillow round the hexes inside; `None` if their surface is no sphere. Its hexes come before the first of those in the order.
     fn with_pillow(&self, inside: &[bool]) -> Option<Self> {
-        let first = inside.iter().position(|&is_inside| is_inside)?;
-        let quads = interface(&self.hexes, inside);
-        let mut copies: BTreeMap<u32, u32> = quads.iter().flatten().map(|&v| (v, 0)).collect();
-        let local: BTreeMap<u32, u32> = copies.keys().copied().zip(0..).collect();
-        let sphere: Vec<[u32; 4]> = quads.iter().map(|q| q.map(|v| local[&v])).collect();
-        if !QuadSurface::try_new(local.len(), &sphere).is_ok_and(|s| s.is_sphere()) {
-            return None;
-        }
-        let n_before = self.points.len();
+        let set: Vec<u32> = (0..).zip(inside).filter(|(_, is_inside)| **is_inside).map(|(h, _)| h).collect();
+        let first = *set.first()? as usize;
+        let Pillowed { mut hexes, copied } = pillow(self.points.len(), &self.hexes, &set)?;
+        let sheet = hexes.split_off(self.hexes.len());
+        hexes.splice(first..first, sheet);
         let mut points = self.points.clone();
-        for (&v, copy) in &mut copies {
-            *copy = points.len() as u32;
-            points.push(self.points[v as usize]);
-        }
-        let mut hexes = self.hexes.clone();
-        for (hex, _) in hexes.iter_mut().zip(inside).filter(|(_, is_inside)| **is_inside) {
-            *hex = hex.map(|v| copies.get(&v).copied().unwrap_or(v));
-        }
-        // Facets are counter-clockwise seen from outside of what they enclose: the copy is the bottom.
-        let pillow = quads.iter().map(|q| {
-            let [[a, b, c, d], [e, f, g, h]] = [q.map(|v| copies[&v]), *q];
-            [a, b, c, d, e, f, g, h]
-        });
-        hexes.splice(first..first, pillow);
-        draw_apart(&hexes, &mut points, n_before);
+        points.extend(copied.iter().map(|&v| self.points[v as usize]));
+        draw_apart(&hexes, &mut points, self.points.len());
         Some(Self { hexes, points, bad: Vec::new(), score: 0.0 })
     }
 }
@@ -200,22 +183,6 @@ fn draw_apart(hexes: &[[u32; 8]], points: &mut [Vector], first: usize) {
             (0..3).for_each(|axis| point[axis] = 0.5 * (point[axis] + sum[axis] / n));
         }
     }
-}
-
-/// The quads between hexes inside and what is not, as facets of those inside, sorted.
-fn interface(hexes: &[[u32; 8]], inside: &[bool]) -> Vec<[u32; 4]> {
-    let mut once: BTreeMap<[u32; 4], Option<[u32; 4]>> = BTreeMap::new();
-    for (hex, _) in hexes.iter().zip(inside).filter(|(_, is_inside)| **is_inside) {
-        for facet in FACETS {
-            let quad = facet.map(|k| hex[k]);
-            let mut key = quad;
-            key.sort_unstable();
-            once.entry(key).and_modify(|quad| *quad = None).or_insert(Some(quad));
-        }
-    }
-    let mut quads: Vec<[u32; 4]> = once.into_values().flatten().collect();
-    quads.sort_unstable();
-    quads
 }
 
 /// The least scaled Jacobian of a hex at its corners.

@@ -11,40 +11,48 @@ use rustc_hash::FxHashMap;
 
 /// Hexes with their incidence. See the module page.
 #[derive(Clone, Debug)]
-pub(super) struct Cells {
+pub(crate) struct Cells {
     hexes: Vec<[u32; 8]>,
     at: Vec<Vec<u32>>,
 }
 
 /// How to take a shrinking back; only the last one can be.
 #[derive(Debug)]
-pub(super) struct Undo {
+pub(crate) struct Undo {
     set: Vec<u32>,
     n_hexes: usize,
     /// Old vertices, ascending; their copies follow the vertices there were.
-    copied: Vec<u32>,
+    pub(crate) copied: Vec<u32>,
 }
 
 impl Cells {
-    pub(super) fn new(mesh: &HexMesh) -> Self {
-        let hexes = mesh.hexes_raw();
-        let mut at = vec![Vec::new(); mesh.n_vertices()];
+    pub(crate) fn new(mesh: &HexMesh) -> Self {
+        Self::of(mesh.n_vertices(), mesh.hexes_raw())
+    }
+
+    /// The hexes of a mesh.
+    pub(crate) fn of(n_vertices: usize, hexes: Vec<[u32; 8]>) -> Self {
+        let mut at = vec![Vec::new(); n_vertices];
         for (h, hex) in hexes.iter().enumerate() {
             hex.iter().for_each(|&v| at[v as usize].push(h as u32));
         }
         Self { hexes, at }
     }
 
-    pub(super) fn to_mesh(&self) -> Result<HexMesh, HexMeshError> {
+    pub(crate) fn to_mesh(&self) -> Result<HexMesh, HexMeshError> {
         HexMesh::try_new(self.at.len(), &self.hexes)
     }
 
-    pub(super) fn n_hexes(&self) -> usize {
+    pub(crate) fn into_hexes(self) -> Vec<[u32; 8]> {
+        self.hexes
+    }
+
+    pub(crate) fn n_hexes(&self) -> usize {
         self.hexes.len()
     }
 
     /// The hexes at a vertex, ascending.
-    pub(super) fn hexes_at(&self, v: u32) -> &[u32] {
+    pub(crate) fn hexes_at(&self, v: u32) -> &[u32] {
         &self.at[v as usize]
     }
 
@@ -58,12 +66,12 @@ impl Cells {
     }
 
     /// The hex with this quad of the boundary.
-    pub(super) fn owner(&self, quad: [u32; 4]) -> Option<u32> {
+    pub(crate) fn owner(&self, quad: [u32; 4]) -> Option<u32> {
         self.hexes_with(&quad).next()
     }
 
     /// The corners at a vertex, as right-handed triples of the ends of their edges; those of the hexes in the sorted `set` left out.
-    pub(super) fn corners_at(&self, v: u32, set: &[u32]) -> Vec<[u32; 3]> {
+    pub(crate) fn corners_at(&self, v: u32, set: &[u32]) -> Vec<[u32; 3]> {
         let outside = self.at[v as usize].iter().filter(|h| set.binary_search(h).is_err());
         outside
             .filter_map(|&h| {
@@ -75,7 +83,7 @@ impl Cells {
     }
 
     /// The facets that the sorted `set` does not share with itself, seen from outside counter-clockwise.
-    pub(super) fn skin(&self, set: &[u32]) -> Vec<[u32; 4]> {
+    pub(crate) fn skin(&self, set: &[u32]) -> Vec<[u32; 4]> {
         let mut skin = Vec::new();
         for &h in set {
             for facet in FACETS {
@@ -89,7 +97,7 @@ impl Cells {
     }
 
     /// Fills the gap between the hexes of the sorted `set`, shrunk, and their `skin`. Returns the way back.
-    pub(super) fn shrink(&mut self, set: &[u32], skin: &[[u32; 4]]) -> Undo {
+    pub(crate) fn shrink(&mut self, set: &[u32], skin: &[[u32; 4]]) -> Undo {
         let n_hexes = self.hexes.len();
         let first_copy = self.at.len() as u32;
         let mut copied: Vec<u32> = skin.iter().flatten().copied().collect();
@@ -117,7 +125,7 @@ impl Cells {
     }
 
     /// Takes the last shrinking back.
-    pub(super) fn undo(&mut self, undo: &Undo) {
+    pub(crate) fn undo(&mut self, undo: &Undo) {
         let first_copy = (self.at.len() - undo.copied.len()) as u32;
         self.hexes.truncate(undo.n_hexes);
         self.at.truncate(first_copy as usize);
@@ -139,7 +147,7 @@ impl Cells {
 }
 
 /// Whether a skin is one sphere: then the set behind it can be shrunk.
-pub(super) fn is_sphere(skin: &[[u32; 4]]) -> bool {
+pub(crate) fn is_sphere(skin: &[[u32; 4]]) -> bool {
     let mut number = FxHashMap::default();
     let quads: Vec<[u32; 4]> = skin
         .iter()
