@@ -310,3 +310,28 @@ fn fewer_meshes_than_asked_for_are_said() {
     assert_eq!(code, 1, "{err}");
     assert!(err.contains("1 of 5 meshes asked for were found"), "{err}");
 }
+
+#[test]
+fn long_work_is_estimated_before_it_begins_and_the_estimate_holds() {
+    let dir = tempfile::tempdir().unwrap();
+    let surfaces = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../corpus/surfaces");
+    let spikes = surfaces.join("cubespikes.obj");
+    let (code, out, err) = hexfill(dir.path(), &["fill", spikes.to_str().unwrap(), "-o", "m.vtu", "--json"]);
+    assert_eq!(code, 0, "{err}");
+    assert!(
+        err.starts_with("estimate: about 0.5 to 24 s of processor time and 300 to 5600 hexes, by shelling"),
+        "{err}"
+    );
+    let report = json(&out);
+    let range = |key: &str| [0, 1].map(|i| report["estimate"][key][i].as_f64().unwrap());
+    let hexes = report["meshes"][0]["hexes"].as_f64().unwrap();
+    let [few, many] = range("hexes");
+    assert!(few <= hexes && hexes <= many, "{hexes}");
+    // A busy machine takes longer than the processor.
+    assert!(range("seconds")[0] <= report["seconds"].as_f64().unwrap());
+    // Small work, and the cells of a grid, say nothing.
+    for surface in [":schneiders-pyramid", surfaces.join("channel.obj").to_str().unwrap()] {
+        let (code, out, err) = hexfill(dir.path(), &["fill", surface, "-o", "s.vtu", "--json"]);
+        assert!(code == 0 && !err.contains("estimate") && json(&out)["estimate"].is_null(), "{err}");
+    }
+}

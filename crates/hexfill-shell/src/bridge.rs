@@ -13,6 +13,10 @@ use hexfill_mesh::{QuadId, QuadSurface};
 
 /// Columns less upright than this (cosine at either quad) are not built.
 const MOST_LEANING: f64 = 0.3;
+/// A column has at most this share of the front's quads as hexes, or so many where that is less: what it adds has to be swept again. Only
+/// needles and specks ask for more.
+const LONGEST_SHARE: f64 = 0.25;
+const LONGEST_OF_FEW: u32 = 8;
 /// Columns whose axis is looked at: winding numbers take time.
 const LOOKED_AT: usize = 50;
 
@@ -75,12 +79,13 @@ impl Front {
                 (turns - 1.0).abs() < 0.5
             })
         };
+        let longest = LONGEST_OF_FEW.max((LONGEST_SHARE * quads.len() as f64) as u32);
         let found = columns.iter().take(LOOKED_AT).filter(|c| is_inside(c)).find_map(|&(_, i, j)| {
             let (from, to) = (&outer[i], &inner[j]);
             let axis = sub(to.centre, from.centre);
             let length = (2.0 * norm(axis) / (from.edge + to.edge)).round();
             // Both ends stand on pillows already.
-            let k = (length as u32).saturating_sub(2 * pillows).clamp(1, 1000);
+            let k = (length as u32).saturating_sub(2 * pillows).clamp(1, longest);
             self.column(from.quad, to.quad, k, points)
         });
         let (state, new) = found?;

@@ -79,6 +79,7 @@ mod simplify;
 mod threads;
 
 pub use best::choice::{Candidate, Choice, Outcome};
+pub use best::estimate::{Estimate, estimate};
 pub use best::{PlaceOptions, PlacedFill, fill_placed};
 pub use check::{check_mesh, with_judged};
 pub use doctor::crossings::crossing_quads;

@@ -7,6 +7,7 @@
 mod budget;
 pub(crate) mod choice;
 mod choose;
+pub(crate) mod estimate;
 mod hopeless;
 mod no_room;
 mod pillows;

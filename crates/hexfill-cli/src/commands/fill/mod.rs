@@ -49,6 +49,10 @@ fn fill(args: &FillArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Result
     let own_log = args.growth_log.is_none().then(|| default_log(args)).flatten();
     let options = fill_options(args, own_log.clone(), ctx)?;
     let how = place_options(args);
+    let estimate = hexfill::estimate(&problem, &options, &how);
+    if let Some(estimate) = &estimate {
+        console.say(format!("estimate: {estimate}"));
+    }
     let result = hexfill::fill_placed(&problem, &options, &how, ctx)?;
     let mut output = Output {
         meshes: Vec::new(),
@@ -57,6 +61,7 @@ fn fill(args: &FillArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Result
         seconds: start.elapsed().as_secs_f64(),
         notes,
         choice: result.choice.clone(),
+        estimate,
     };
     if result.meshes.is_empty() {
         output.notes = result.tried.iter().map(ToString::to_string).collect();

@@ -2,7 +2,7 @@
 
 use super::args::FillArgs;
 use crate::console::Console;
-use hexfill::{Choice, FillReport, GeometryReport, PlacedFill, StopReason};
+use hexfill::{Choice, Estimate, FillReport, GeometryReport, PlacedFill, StopReason};
 use serde::Serialize;
 use std::path::Path;
 
@@ -26,6 +26,8 @@ pub(super) struct Output {
     pub(super) notes: Vec<String>,
     /// Why this mesh and no other, if there was a choice.
     pub(super) choice: Option<Choice>,
+    /// What was expected before the work, unless it was short.
+    pub(super) estimate: Option<Estimate>,
 }
 
 /// The report for a person where there is no mesh.

@@ -61,6 +61,12 @@ pub(crate) struct SurfaceEdge {
     chain: Vec<VertexId>,
 }
 
+/// Rounds of points for triangles that are not there yet. Ordinary surfaces take a few, which add most of their points; where two triangles
+/// all but lie in each other, each round adds two points, and every one looks at all tets.
+const ROUNDS: u64 = 200;
+
+const TOO_MANY: &str = "the surface meets itself or nearly does: recovering it took too many points";
+
 /// The surface and the tetrahedralisation that is to conform to it.
 pub(crate) struct Conforming<'a> {
     pub(super) dt: Delaunay,
@@ -137,7 +143,7 @@ impl<'a> Conforming<'a> {
 
     /// Adds points until the surface is there.
     pub(super) fn refine(&mut self, ctx: &Context<'_>) -> Result<(), Failure> {
-        for round in 0.. {
+        for round in 0..ROUNDS {
             self.recover_edges(ctx)?;
             let open = self.open_triangles();
             ctx.report("conforming tetrahedra", round, None, || {
@@ -153,7 +159,7 @@ impl<'a> Conforming<'a> {
                 self.pierce(t)?;
             }
         }
-        Ok(())
+        Err(TOO_MANY.to_owned().into())
     }
 
     /// Splits edges until all pieces are edges of tets.
@@ -204,9 +210,7 @@ impl<'a> Conforming<'a> {
 
     fn add(&mut self, p: Vector, near: VertexId, origin: Origin) -> Result<VertexId, Failure> {
         if self.budget == 0 {
-            return Err("the surface meets itself or nearly does: recovering it took too many points"
-                .to_owned()
-                .into());
+            return Err(TOO_MANY.to_owned().into());
         }
         self.budget -= 1;
         let v = self.dt.add(p, near).map_err(|_| "the surface meets itself: two of its points coincide".to_owned())?;
