@@ -3,7 +3,7 @@
 //! A state costs a parent, a flip and the hash of its class. The hash only points: a filling is replayed and its
 //! boundary compared before it is handed out, so a clash of hashes costs time and never a wrong answer.
 
-use crate::atlas_index::{AtlasIndex, HASH_BITS, state_of};
+use crate::atlas_index::{AtlasIndex, HASH_BITS};
 use crate::ball::Ball;
 use crate::canonical::Canonical;
 use crate::cavity::Cavity;
@@ -130,8 +130,8 @@ impl Atlas {
     }
 
     /// The states whose class has this name, fewest hexes first; a hash only points.
-    pub(crate) fn states_of(&self, class: u128) -> impl ExactSizeIterator<Item = u32> + '_ {
-        self.index.entries_with(short_hash(class)).iter().map(|&entry| state_of(entry))
+    pub(crate) fn states_of(&self, class: u128) -> impl Iterator<Item = u32> + '_ {
+        self.index.states_with(short_hash(class))
     }
 
     /// The flips that lead from the cube to a state.
@@ -195,7 +195,7 @@ impl Atlas {
         let mut named = vec![false; self.n_states()];
         named[0] = true;
         for class in self.index.classes() {
-            for state in class.iter().take(width).map(|&entry| state_of(entry)) {
+            for state in class.into_iter().take(width) {
                 named[state as usize] |= keep(usize::from(quads[state as usize]), self.hexes_of(state));
             }
         }
@@ -234,7 +234,7 @@ impl Atlas {
         let vertices = self.along_the_flips(8, |flip| flip.kind.new_vertices());
         let mut smallest = std::collections::BTreeMap::<usize, (Vec<u32>, Vec<u32>)>::new();
         for class in self.index.classes() {
-            let state = state_of(class[0]);
+            let state = class[0];
             let n = quads[state as usize];
             let (hexes, interior) = smallest.entry(usize::from(n)).or_default();
             hexes.push(self.hexes_of(state));

@@ -9,7 +9,7 @@
 use crate::atlas::{Atlas, STEP, short_hash};
 use crate::flip::Flip;
 use crate::grow::{GrowOptions, Growth, LevelReport};
-use flate2::{Compression, read::DeflateDecoder, write::DeflateEncoder};
+use flate2::{Compression, bufread::DeflateDecoder, write::DeflateEncoder};
 use std::fs::{File, OpenOptions};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -305,7 +305,9 @@ impl Atlas {
             let below = parents.len() as i64;
             level_starts.push(below as u32);
             let mut last = 0i64;
-            for _ in 0..read_varint(&mut data).ok_or("truncated")? {
+            let members = read_varint(&mut data).ok_or("truncated")?;
+            parents.reserve((members as usize).min(data.len()));
+            for _ in 0..members {
                 let step = read_varint(&mut data).ok_or("truncated")?;
                 last = last.wrapping_add((step >> 1) as i64 ^ -((step & 1) as i64));
                 if last < 0 || (last >= below && level > 0) || (level == 0 && last != 0) {
@@ -324,10 +326,9 @@ impl Atlas {
         let flips: Option<Vec<Flip>> = kinds.iter().zip(darts).map(|(&k, &d)| Flip::from_bytes([k, d])).collect();
         let mut hashes = vec![STEP; n];
         for (slot, _) in hashes.iter_mut().zip(named).filter(|(_, named)| **named == 1) {
-            let (head, tail) = rest.split_at_checked(HASH_BYTES).ok_or("truncated")?;
-            let mut hash = [0; 8];
-            hash[..HASH_BYTES].copy_from_slice(head);
-            *slot = u64::from_le_bytes(hash);
+            let (head, tail) = rest.split_first_chunk::<HASH_BYTES>().ok_or("truncated")?;
+            let [a, b, c, d, e] = *head;
+            *slot = u64::from(u32::from_le_bytes([a, b, c, d])) | u64::from(e) << 32;
             rest = tail;
         }
         if !rest.is_empty() {
@@ -345,7 +346,13 @@ fn varint(out: &mut Vec<u8>, mut x: u64) {
     out.push(x as u8);
 }
 
+#[inline]
 fn read_varint(data: &mut &[u8]) -> Option<u64> {
+    // Nearly all numbers of an atlas are one byte.
+    if let [byte @ 0..0x80, rest @ ..] = *data {
+        *data = rest;
+        return Some(u64::from(*byte));
+    }
     let mut x = 0u64;
     for shift in (0..64).step_by(7) {
         let (&byte, rest) = data.split_first()?;

@@ -1,8 +1,8 @@
 //! [`AtlasIndex`]: from the short hash of a class to its states, a table of buckets.
 //!
 //! Short hashes are uniform in 40 bits, so their leading bits choose one of about `n / 4` buckets of a few entries each, and
-//! the other bits, at most 32, share a word with the state: a look-up reads two places in memory, and the table is made by
-//! one pass of counting instead of a sort of everything.
+//! the other bits, at most 32, share a word with the state: a look-up reads two places in memory. The table is made by
+//! one pass of counting; nothing is sorted, as a program that fills one small surface looks up a handful of the half million states.
 
 /// Bits of a short hash.
 pub(crate) const HASH_BITS: u32 = 40;
@@ -16,13 +16,8 @@ pub(crate) struct AtlasIndex {
     bucket_bits: u32,
     /// First entry of each bucket, and the end.
     starts: Vec<u32>,
-    /// The low 32 bits of a hash, then its state; ascending within a bucket.
+    /// The low 32 bits of a hash, then its state; ascending by state within a bucket.
     entries: Vec<u64>,
-}
-
-/// The state of an entry.
-pub(crate) const fn state_of(entry: u64) -> u32 {
-    entry as u32
 }
 
 impl AtlasIndex {
@@ -31,44 +26,48 @@ impl AtlasIndex {
         let n = hashes.iter().filter(|&&h| h != step).count();
         let bucket_bits = (n / 4).max(1).ilog2().clamp(FEWEST_BUCKET_BITS, HASH_BITS - 8);
         let shift = HASH_BITS - bucket_bits;
-        let mut starts = vec![0u32; (1 << bucket_bits) + 1];
+        // Counted one place further on than the start belongs, so that filling a bucket moves its start to where it belongs.
+        let mut starts = vec![0u32; (1 << bucket_bits) + 2];
         for &hash in hashes.iter().filter(|&&h| h != step) {
-            starts[(hash >> shift) as usize + 1] += 1;
+            starts[(hash >> shift) as usize + 2] += 1;
         }
         for b in 1..starts.len() {
             starts[b] += starts[b - 1];
         }
-        let mut ends = starts.clone();
         let mut entries = vec![0; n];
         for (state, &hash) in hashes.iter().enumerate().filter(|&(_, &h)| h != step) {
-            let end = &mut ends[(hash >> shift) as usize];
-            entries[*end as usize] = hash << 32 | state as u64;
-            *end += 1;
+            let next = &mut starts[(hash >> shift) as usize + 1];
+            entries[*next as usize] = hash << 32 | state as u64;
+            *next += 1;
         }
-        for bucket in starts.windows(2) {
-            entries[bucket[0] as usize..bucket[1] as usize].sort_unstable();
-        }
+        starts.pop();
         Self { bucket_bits, starts, entries }
     }
 
-    /// The entries of the states with this hash, ascending by state.
-    pub(crate) fn entries_with(&self, hash: u64) -> &[u64] {
-        let bucket = (hash >> (HASH_BITS - self.bucket_bits)) as usize;
-        let Some(&[start, end]) = self.starts.get(bucket..).and_then(|rest| rest.first_chunk()) else {
-            return &[];
-        };
-        let bucket = &self.entries[start as usize..end as usize];
+    /// The states with this hash, ascending.
+    pub(crate) fn states_with(&self, hash: u64) -> impl Iterator<Item = u32> + '_ {
         let low = hash as u32;
-        let first = bucket.partition_point(|&e| ((e >> 32) as u32) < low);
-        let len = bucket[first..].iter().take_while(|&&e| (e >> 32) as u32 == low).count();
-        &bucket[first..first + len]
+        self.bucket((hash >> (HASH_BITS - self.bucket_bits)) as usize)
+            .iter()
+            .filter(move |&&entry| (entry >> 32) as u32 == low)
+            .map(|&entry| entry as u32)
     }
 
-    /// The entries of each class, classes by hash, states ascending.
-    pub(crate) fn classes(&self) -> impl Iterator<Item = &[u64]> {
-        self.starts
-            .windows(2)
-            .flat_map(|b| self.entries[b[0] as usize..b[1] as usize].chunk_by(|a, b| a >> 32 == b >> 32))
+    /// The states of each class: classes by hash, states ascending.
+    pub(crate) fn classes(&self) -> impl Iterator<Item = Vec<u32>> + '_ {
+        (0..self.starts.len().saturating_sub(1)).flat_map(|b| {
+            let mut entries = self.bucket(b).to_vec();
+            entries.sort_unstable();
+            let classes = entries.chunk_by(|a, b| a >> 32 == b >> 32);
+            classes.map(|class| class.iter().map(|&entry| entry as u32).collect()).collect::<Vec<Vec<u32>>>()
+        })
+    }
+
+    fn bucket(&self, b: usize) -> &[u64] {
+        match self.starts.get(b..).and_then(|rest| rest.first_chunk()) {
+            Some(&[start, end]) => &self.entries[start as usize..end as usize],
+            None => &[],
+        }
     }
 }
 
@@ -91,16 +90,14 @@ mod tests {
             let hashes: Vec<u64> = (0..n).map(hash).collect();
             let index = AtlasIndex::new(&hashes, 0);
             for wanted in hashes.iter().copied().chain([3, mask]).filter(|&h| h != 0) {
-                let found: Vec<u32> = index.entries_with(wanted).iter().map(|&e| state_of(e)).collect();
+                let found: Vec<u32> = index.states_with(wanted).collect();
                 let expected: Vec<u32> = (0..n as u32).filter(|&s| hashes[s as usize] == wanted).collect();
                 assert_eq!(found, expected);
             }
-            let listed: Vec<u64> = index.classes().map(|c| hashes[state_of(c[0]) as usize]).collect();
-            let mut distinct: Vec<u64> = hashes.iter().copied().filter(|&h| h != 0).collect();
-            distinct.sort_unstable();
-            distinct.dedup();
-            assert_eq!(listed, distinct);
+            let mut classes = std::collections::BTreeMap::<u64, Vec<u32>>::new();
+            hashes.iter().zip(0..).filter(|&(&h, _)| h != 0).for_each(|(&h, s)| classes.entry(h).or_default().push(s));
+            assert!(index.classes().eq(classes.into_values()));
         }
-        assert!(AtlasIndex::default().entries_with(9).is_empty());
+        assert_eq!(AtlasIndex::default().states_with(9).next(), None);
     }
 }

@@ -8,8 +8,11 @@ use crate::quality::{Cells, judge_near_worst, worst_value};
 use hexfill_geometry::Vector;
 use hexfill_mesh::{Context, StopReason};
 
-/// Cells in a patch at most when it is to climb: the linear programs of larger ones are slow.
-const CLIMB_CELLS: usize = 600;
+/// Cells in a patch at most when it is to climb, unless it is round a single cell: the programs of larger ones are slow and bring no more.
+const CLIMB_CELLS: usize = 200;
+
+/// Cells in a patch round a single cell at most.
+const LONE_CELLS: usize = 1200;
 
 /// Whether the worst cells are few: then patches round them are quicker than barriers over the whole mesh.
 pub(crate) fn is_worst_isolated(problem: &Problem, points: &[Vector]) -> bool {
@@ -42,7 +45,7 @@ fn patches_round_worst(
     loop {
         let parts = patches(problem, incidence, &order[..seeds], rings);
         let largest = parts.iter().map(|p| p.problem.hexes.len()).max().unwrap_or(0);
-        if seeds == 1 && largest > 2 * CLIMB_CELLS {
+        if seeds == 1 && largest > LONE_CELLS {
             return None;
         }
         if seeds == 1 || largest <= CLIMB_CELLS {
