@@ -163,7 +163,11 @@ fn judged(mesh: &HexMesh, boundary: Option<&[[u32; 4]]>) -> Result<(), String> {
     if let Some(quads) = boundary {
         judged = judged.with_surface(quads);
     }
-    let options = hexfill_check::Options::default().up_to(Level::L3).parts(Parts::Any).betti(false).quality(false);
+    let options = hexfill_check::Options::default()
+        .with_up_to(Level::L3)
+        .with_parts(Parts::Any)
+        .with_betti(false)
+        .with_quality(false);
     let report = judge(&judged, &options, &Context::default());
     if report.passed(Level::L3) { Ok(()) } else { Err(report.broken_rules().join(", ")) }
 }

@@ -130,7 +130,7 @@ fn odd_solid(surface: &QuadSurface, points: Option<&[[f64; 3]]>) -> Option<Exist
         component.extend([surface.component(QuadId::new(q)); 2]);
     }
     match solids(&triangles, &component, size.len(), points) {
-        Err(reason) => unknown(reason),
+        Err(reason) => unknown(reason.to_string()),
         Ok(solids) => solids.into_iter().find_map(|components| {
             let given: usize = components.iter().map(|&c| size[c]).sum();
             (!given.is_multiple_of(2)).then_some(Existence::OddSolid { components, given })
@@ -139,6 +139,20 @@ fn odd_solid(surface: &QuadSurface, points: Option<&[[f64; 3]]>) -> Option<Exist
 }
 
 /// Decides existence. `points` are needed only if the surface has odd cycles (never for spheres).
+///
+/// # Example
+/// ```
+/// use hexfill_construct::{Existence, existence};
+/// use hexfill_mesh::QuadSurface;
+///
+/// // Three quads from pole to pole: closed, but any two share three vertices.
+/// let quads = [[0, 1, 4, 2], [0, 2, 4, 3], [0, 3, 4, 1]];
+/// assert!(matches!(existence(&QuadSurface::try_new(5, &quads)?, None), Existence::OddQuads { given: 3 }));
+///
+/// let quads = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
+/// assert!(matches!(existence(&QuadSurface::try_new(8, &quads)?, None), Existence::Exists { .. }));
+/// # Ok::<(), hexfill_mesh::SurfaceError>(())
+/// ```
 pub fn existence(surface: &QuadSurface, points: Option<&[[f64; 3]]>) -> Existence {
     if let Some(no) = forbidden(surface) {
         return no;
@@ -157,7 +171,7 @@ pub fn existence(surface: &QuadSurface, points: Option<&[[f64; 3]]>) -> Existenc
     let s = Darts::of_surface(surface);
     let l = match linking(&s, points, &Context::default()) {
         Ok(l) => l,
-        Err(LinkingError::Undecided(reason)) => return Existence::Unknown { reason: reason.into() },
+        Err(LinkingError::Undecided(reason)) => return Existence::Unknown { reason: reason.to_string() },
         Err(LinkingError::Stopped(reason)) => return Existence::Unknown { reason: format!("stopped: {reason:?}") },
     };
     odd_cycle_inside(&s, &l)

@@ -74,6 +74,7 @@ fn centre(points: &mut [Vector]) {
         }
         let Some(klein) = solve3(h, mean) else { break };
         let length = norm(klein);
+        // A full Newton step may leave the ball, in which all boosts are.
         let klein = if length > 0.9 { scale(0.9 / length, klein) } else { klein };
         // The same boost in the ball model that acts on the sphere by inversions.
         let c = scale(1.0 / (1.0 + (1.0 - dot(klein, klein)).sqrt()), klein);
@@ -109,6 +110,8 @@ fn apexes(surface: &QuadSurface, touching: &[Vector]) -> Vec<Vector> {
             let q = ring[(i + 1) % ring.len()];
             normal = add(normal, cross(sub(q, middle), sub(p, middle)));
         }
+        // The pole of the plane n . x = n . m with respect to the unit sphere: n / (n . m), the apex of the cone that
+        // touches along its circle.
         points[v] = scale(1.0 / dot(normal, middle), normal);
     }
     points

@@ -81,6 +81,7 @@ pub(crate) fn with_pillows(
             .take(TOGETHER)
             .collect();
         tried += drawn.len().max(1) as u32;
+        // A short untangling tells which pillows may help; only the best few get a long one.
         let mut quick: Vec<Stage> = drawn.into_par_iter().filter_map(|stage| stage.untangled(QUICK, ctx)).collect();
         quick.sort_by(|a, b| cost(a).total_cmp(&cost(b)));
         quick.truncate(FULL);
@@ -160,6 +161,7 @@ impl Stage {
         hexes.splice(first..first, sheet);
         let mut points = self.points.clone();
         points.extend(copied.iter().map(|&v| self.points[v as usize]));
+        // Copies lie on their originals, and a sheet without volume gives untangling nothing to start from.
         draw_apart(&hexes, &mut points, self.points.len());
         Some(Self { hexes, points, bad: Vec::new(), score: 0.0 })
     }

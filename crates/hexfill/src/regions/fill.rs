@@ -142,7 +142,7 @@ fn fill_once(
 /// Levels 1 and 2 of the judge on the whole; the rules that fail.
 fn fits(data: &MeshData) -> Result<(), String> {
     let judged = Judged::connectivity(data.points.len(), &data.hexes);
-    let options = hexfill_check::Options::default().up_to(Level::L2).betti(false).quality(false);
+    let options = hexfill_check::Options::default().with_up_to(Level::L2).with_betti(false).with_quality(false);
     let report = judge(&judged, &options, &Context::default());
     if report.passed(Level::L2) { Ok(()) } else { Err(report.broken_rules().join(", ")) }
 }
