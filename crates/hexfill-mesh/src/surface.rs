@@ -243,6 +243,8 @@ impl QuadSurface {
             }
         }
         if !non_manifold.is_empty() {
+            // A quad listed twice shows as edges with too many quads; its copies are the cause and what there is to
+            // remove.
             let quads = self.copies();
             if !quads.is_empty() {
                 return Err(SurfaceError::RepeatedQuads { quads });
@@ -309,6 +311,8 @@ impl QuadSurface {
                     }
                 }
             }
+            // Which of the two orientations is wanted nobody says: the one that most quads have already, so that few
+            // change.
             let minority_is_flipped = 2 * members.iter().filter(|&&q| flip[q]).count() <= members.len();
             if !minority_is_flipped {
                 for q in members {
@@ -339,6 +343,8 @@ impl QuadSurface {
                 continue;
             }
             seen[v.index()] = true;
+            // Edges are in two quads each, so the fan at a dart closes; quads it does not reach are a fan of their
+            // own, pinched on.
             if self.round_vertex(d).count() as u32 != self.degree(v) {
                 bad.insert(v);
             }

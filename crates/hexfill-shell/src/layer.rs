@@ -3,7 +3,7 @@
 //! A chord whose quads are distinct is a closed ring; taking it out leaves two sides, R and L, joined by the *rungs*, the
 //! edges the chord crosses. A layer puts one hex on every quad of R; the ring's quads become lateral facets, the top of a
 //! rim vertex is the other end of its rung, and the front is the old one with the ring contracted: all other chords
-//! survive (successive dual cycle elimination; Mueller-Hannemann, J. Graph Algorithms Appl. 5(5), 2001). If R and L are
+//! survive (successive dual cycle elimination; Müller-Hannemann 2001). If R and L are
 //! mirror images across the rungs, the same hexes close the void. On surfaces that are not spheres a set of rings whose
 //! union separates takes the place of one.
 //!

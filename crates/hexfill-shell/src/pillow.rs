@@ -11,8 +11,7 @@ pub struct Pillowed {
     pub copied: Vec<u32>,
 }
 
-/// Puts a pillow round the hexes of `set` (ascending) of a mesh: a sheet of one hex over each facet of their surface (Mitchell, Tautges, *Pillowing
-/// doublets*, 1995). `None` if that surface is no sphere. The boundary of the mesh stays as it is, and cells that met properly still do.
+/// Puts a pillow round the hexes of `set` (ascending) of a mesh: a sheet of one hex over each facet of their surface (Mitchell, Tautges 1995). `None` if that surface is no sphere. The boundary of the mesh stays as it is, and cells that met properly still do.
 ///
 /// # Example
 /// A pillow round one of two cubes: it stays inside, six hexes more.

@@ -7,6 +7,7 @@
 use super::linking::{Linking, LinkingError, linking};
 use super::nesting::solids;
 use super::polygons::Darts;
+use crate::missing::MissingInterior;
 use hexfill_mesh::{Context, Edge, ImproperPair, Offenders, QuadId, QuadSurface, bipartition, improper_pairs};
 use std::collections::BTreeSet;
 use std::fmt;
@@ -122,6 +123,9 @@ fn odd_solid(surface: &QuadSurface, points: Option<&[[f64; 3]]>) -> Option<Exist
                 .into(),
         );
     };
+    if points.len() < surface.n_vertices() || !points.iter().flatten().all(|x| x.is_finite()) {
+        return unknown(MissingInterior::PositionsMissing.to_string());
+    }
     let mut triangles = Vec::with_capacity(2 * surface.n_quads());
     let mut component = Vec::with_capacity(2 * surface.n_quads());
     for (q, quad) in surface.quads().iter().enumerate() {
@@ -138,7 +142,9 @@ fn odd_solid(surface: &QuadSurface, points: Option<&[[f64; 3]]>) -> Option<Exist
     }
 }
 
-/// Decides existence. `points` are needed only if the surface has odd cycles (never for spheres).
+/// Decides existence. `points`, a position for each vertex id in any unit, are needed only if the surface has odd cycles or several components
+/// of which some have odd numbers of quads (never for one sphere); where they are needed and too few or not finite the answer is
+/// [`Existence::Unknown`]. Linear time, but for surfaces with handles and odd cycles: linking numbers of 2 g loops.
 ///
 /// # Example
 /// ```

@@ -1,8 +1,7 @@
 //! Pillows between the stages of a shelled mesh, until it has valid positions.
 //!
 //! Meshes of surfaces whose chords cross themselves heavily close with few hexes and then do not embed: too many of them meet in the void that
-//! the sweep left. A pillow, a sheet of one hex a quad, can be put round any set of hexes whose surface is a sphere (Mitchell, Tautges,
-//! *Pillowing: doublets and refinement*, 1995), so before any stage of the shelling after the fact; it takes neighbours apart that share too much. A
+//! the sweep left. A pillow, a sheet of one hex a quad, can be put round any set of hexes whose surface is a sphere (Mitchell, Tautges 1995), so before any stage of the shelling after the fact; it takes neighbours apart that share too much. A
 //! search puts pillows near corners that are not positive, untangles what lies round them, and keeps what brings the corners nearer to positive for
 //! the hexes it costs. Measured in `record/self-crossing-2026-11-22.md`, section 1; counts bound the work, not a clock.
 
