@@ -12,7 +12,7 @@ use hexfill_io::{MeshData, OtherFace, closing_tolerance, weld};
 #[derive(Clone, Copy, Debug, Default)]
 #[non_exhaustive]
 pub struct CureOptions {
-    refine: bool,
+    pub(crate) refine: bool,
 }
 
 impl CureOptions {
