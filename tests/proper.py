@@ -2,70 +2,119 @@
 """Is a hex mesh proper, and its boundary the quads of the file? Shares nothing with hexfill: reads a legacy VTK file (ASCII) with hexes and quads.
 
     python3 tests/proper.py MESH.vtk
+
+Asked of it: facets pair in one cyclic order, the boundary is the quads listed, any two hexes share nothing, a vertex, an edge of both or a facet
+of both, and every vertex link is a sphere (inside) or a disk (on the boundary). The first that fails ends the program; improper pairs are counted.
 """
-import sys,itertools,collections
-def read(p):
-    t=open(p).read().split()
-    i=t.index('POINTS'); n=int(t[i+1])
-    i=t.index('CELLS'); nc=int(t[i+1]); k=i+3
-    cells=[]
-    for _ in range(nc):
-        m=int(t[k]); cells.append([int(x) for x in t[k+1:k+1+m]]); k+=m+1
-    return n,cells
-F=[(0,4,7,3),(1,2,6,5),(0,1,5,4),(3,7,6,2),(0,3,2,1),(4,5,6,7)]
-E=[(0,1),(1,2),(2,3),(3,0),(4,5),(5,6),(6,7),(7,4),(0,4),(1,5),(2,6),(3,7)]
-n,cells=read(sys.argv[1])
-H=[c for c in cells if len(c)==8]; Q=[c for c in cells if len(c)==4]
-print(len(H),'hexes',len(Q),'quads')
-assert all(len(set(h))==8 for h in H)
-fac=collections.defaultdict(list)
-for i,h in enumerate(H):
-    for f in F: fac[frozenset(h[k] for k in f)].append((i,[h[k] for k in f]))
-assert all(len(v)<=2 for v in fac.values())
-def cyc(q):
-    i=q.index(min(q)); a=q[i:]+q[:i]; b=[a[0]]+a[:0:-1]; return min(tuple(a),tuple(b))
-for v in fac.values():
-    assert len({cyc(q) for _,q in v})==1   # same cyclic order
-bd={cyc(v[0][1]) for v in fac.values() if len(v)==1}
-assert bd=={cyc(q) for q in Q} and len(bd)==len(Q), 'boundary'
-# proper intersection
-faces=[]
-for h in H:
-    s={frozenset([v]) for v in h}|{frozenset((h[a],h[b])) for a,b in E}|{frozenset(h[k] for k in f) for f in F}
-    faces.append(s)
-bad=0
-for i,j in itertools.combinations(range(len(H)),2):
-    c=frozenset(H[i])&frozenset(H[j])
-    if c and not (c in faces[i] and c in faces[j]): bad+=1
-print('improper pairs',bad)
-# vertex links: triangles of corners; must be sphere (interior) or disk (boundary)
-bv={v for q in bd for v in q}
-NB={0:(1,3,4),1:(0,2,5),2:(1,3,6),3:(0,2,7),4:(0,5,7),5:(1,4,6),6:(2,5,7),7:(3,4,6)}
-used=sorted({v for h in H for v in h})
-for v in used:
-    tris=[]
-    for h in H:
-        if v in h:
-            k=h.index(v); tris.append(tuple(h[x] for x in NB[k]))
-    e=collections.Counter(frozenset(p) for t in tris for p in itertools.combinations(t,2))
-    vs={x for t in tris for x in t}
-    chi=len(vs)-len(e)+len(tris)
-    # connected
-    seen={tris[0]};st=[tris[0]]
-    while st:
-        a=st.pop()
-        for b in tris:
-            if b not in seen and len(set(a)&set(b))==2: seen.add(b);st.append(b)
-    assert len(seen)==len(tris)
-    # link of each link-vertex is a path or cycle
-    for x in vs:
-        nb=[tuple(y for y in t if y!=x) for t in tris if x in t]
-        deg=collections.Counter(y for p in nb for y in p)
-        ones=[y for y in deg if deg[y]==1]
-        assert max(deg.values())<=2 and len(ones) in (0,2) and len(deg)==len(nb)+(1 if ones else 0)
-    border=[y for y in e if e[y]==1]
-    assert max(e.values())<=2
-    assert (chi==1 and border) if v in bv else (chi==2 and not border),(v,chi)
-print('all vertex links are spheres or disks; vertices',len(used))
-vs=len(used); es=len({frozenset((h[a],h[b])) for h in H for a,b in E}); fs=len(fac)
-print('euler',vs-es+fs-len(H))
+import sys
+from collections import Counter, defaultdict
+from itertools import combinations
+
+# The cube in VTK's order of corners.
+FACETS = [(0, 4, 7, 3), (1, 2, 6, 5), (0, 1, 5, 4), (3, 7, 6, 2), (0, 3, 2, 1), (4, 5, 6, 7)]
+EDGES = [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)]
+NEIGHBOURS = [(1, 3, 4), (0, 2, 5), (1, 3, 6), (0, 2, 7), (0, 5, 7), (1, 4, 6), (2, 5, 7), (3, 4, 6)]
+
+
+def read_cells(path):
+    """The cells of a file, each the list of its vertices."""
+    with open(path) as file:
+        words = file.read().split()
+    at = words.index("CELLS")
+    n_cells, at = int(words[at + 1]), at + 3
+    cells = []
+    for _ in range(n_cells):
+        size = int(words[at])
+        cells.append([int(word) for word in words[at + 1 : at + 1 + size]])
+        at += size + 1
+    return cells
+
+
+def cyclic(quad):
+    """The same for a quad from any corner on, in either direction."""
+    first = quad.index(min(quad))
+    forth = quad[first:] + quad[:first]
+    return min(tuple(forth), (forth[0], *forth[:0:-1]))
+
+
+def facets_of(hexes):
+    """Per vertex set the facets that have it, as their cycles; at most two, in one cyclic order."""
+    facets = defaultdict(list)
+    for hexa in hexes:
+        for facet in FACETS:
+            quad = [hexa[k] for k in facet]
+            facets[frozenset(quad)].append(cyclic(quad))
+    for same in facets.values():
+        assert len(same) <= 2, "a quad in three hexes"
+        assert len(set(same)) == 1, "a twisted quad"
+    return facets
+
+
+def count_improper(hexes):
+    """Pairs of hexes that share more than a vertex, an edge of both or a facet of both."""
+    faces = [
+        {frozenset([v]) for v in hexa}
+        | {frozenset((hexa[a], hexa[b])) for a, b in EDGES}
+        | {frozenset(hexa[k] for k in facet) for facet in FACETS}
+        for hexa in hexes
+    ]
+    improper = 0
+    for i, j in combinations(range(len(hexes)), 2):
+        common = frozenset(hexes[i]) & frozenset(hexes[j])
+        improper += bool(common) and not (common in faces[i] and common in faces[j])
+    return improper
+
+
+def check_link(v, hexes, is_boundary):
+    """The link of a vertex, one triangle a hex, is a connected surface, and a disk or a sphere."""
+    triangles = [tuple(hexa[k] for k in NEIGHBOURS[hexa.index(v)]) for hexa in hexes if v in hexa]
+    sides = Counter(frozenset(pair) for triangle in triangles for pair in combinations(triangle, 2))
+    corners = {x for triangle in triangles for x in triangle}
+    assert max(sides.values()) <= 2, ("a side in three triangles", v)
+
+    seen, stack = {triangles[0]}, [triangles[0]]
+    while stack:
+        here = stack.pop()
+        for other in triangles:
+            if other not in seen and len(set(here) & set(other)) == 2:
+                seen.add(other)
+                stack.append(other)
+    assert len(seen) == len(triangles), ("a link in pieces", v)
+
+    # Round each corner of the link the triangles form a path or a cycle.
+    for corner in corners:
+        opposite = [tuple(y for y in triangle if y != corner) for triangle in triangles if corner in triangle]
+        degree = Counter(y for pair in opposite for y in pair)
+        ends = sum(n == 1 for n in degree.values())
+        assert max(degree.values()) <= 2 and ends in (0, 2), ("a corner with several fans", v)
+        assert len(degree) == len(opposite) + (ends == 2), ("a corner with several fans", v)
+
+    euler = len(corners) - len(sides) + len(triangles)
+    has_border = any(n == 1 for n in sides.values())
+    assert (euler, has_border) == ((1, True) if is_boundary else (2, False)), (v, euler)
+
+
+def main(path):
+    cells = read_cells(path)
+    hexes = [cell for cell in cells if len(cell) == 8]
+    quads = [cell for cell in cells if len(cell) == 4]
+    print(len(hexes), "hexes", len(quads), "quads")
+    assert all(len(set(hexa)) == 8 for hexa in hexes), "a hex uses a vertex twice"
+
+    facets = facets_of(hexes)
+    boundary = {same[0] for same in facets.values() if len(same) == 1}
+    assert boundary == {cyclic(quad) for quad in quads} and len(boundary) == len(quads), "boundary"
+    print("improper pairs", count_improper(hexes))
+
+    on_boundary = {v for quad in boundary for v in quad}
+    used = sorted({v for hexa in hexes for v in hexa})
+    for v in used:
+        check_link(v, hexes, v in on_boundary)
+    print("all vertex links are spheres or disks; vertices", len(used))
+
+    edges = {frozenset((hexa[a], hexa[b])) for hexa in hexes for a, b in EDGES}
+    print("euler", len(used) - len(edges) + len(facets) - len(hexes))
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])

@@ -28,7 +28,7 @@ pub(crate) fn check<'py>(
     how: Run,
 ) -> PyResult<Verdict<'py>> {
     let rules = choice("rules", rules, &[("strict", Rules::Strict), ("weill", Rules::Weill)]);
-    let options = Options::default().rules(rules.map_err(|failure| failure.raise(py))?).overlap(overlap);
+    let options = Options::default().with_rules(rules.map_err(|failure| failure.raise(py))?).with_overlap(overlap);
     let (data, surface) = (Arc::clone(&mesh.0), surface.map(|s| Arc::clone(&s.0)));
     let ((report, cells), interrupted) = run(py, how, move |ctx| judged(&data, surface.as_deref(), &options, ctx))?;
     if interrupted {

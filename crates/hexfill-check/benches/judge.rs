@@ -17,14 +17,14 @@ fn judging(c: &mut Criterion) {
         .map(|v| [v % side, v / side % side, v / side / side].map(|x| x as f64 + 0.15 * random.signed()))
         .collect();
     let input = Judged::connectivity(points.len(), &hexes).with_points(&points);
-    let base = Options::default().betti(false).quality(false);
+    let base = Options::default().with_betti(false).with_quality(false);
     let mut group = c.benchmark_group("judge 27,000 hexes");
     group.sample_size(10);
     for (name, options) in [
-        ("L1-L3", base.up_to(Level::L3)),
+        ("L1-L3", base.with_up_to(Level::L3)),
         ("L1-L5", base),
-        ("L1-L5, quality", base.quality(true)),
-        ("L1-L5, Betti numbers", base.betti(true)),
+        ("L1-L5, quality", base.with_quality(true)),
+        ("L1-L5, Betti numbers", base.with_betti(true)),
     ] {
         assert!(judge(&input, &options, &Context::default()).no_failure(), "{name}");
         group.bench_function(name, |b| b.iter(|| judge(&input, &options, &Context::default())));

@@ -176,6 +176,26 @@ fn not_valid(report: &Report) -> CertificateError {
 ///
 /// # Errors
 /// [`CertificateError::NotValid`] if it does not.
+///
+/// # Example
+/// A corner is moved by one unit in the last place: the certificate is for another mesh.
+/// ```
+/// use hexfill_check::{CertificateError, Judged, certify, verify_certificate};
+/// use hexfill_mesh::Context;
+///
+/// let hexes = [[0, 1, 2, 3, 4, 5, 6, 7]];
+/// let corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]];
+/// let mut points = corners.map(|p| p.map(f64::from));
+/// let ctx = Context::default();
+/// let text = certify(&Judged::connectivity(8, &hexes).with_points(&points), &ctx)?.to_json();
+/// let cube = Judged::connectivity(8, &hexes).with_points(&points);
+/// assert_eq!(verify_certificate(&text, &cube, &ctx)?.det_j_positive, 1);
+///
+/// points[6][0] = points[6][0].next_up();
+/// let moved = Judged::connectivity(8, &hexes).with_points(&points);
+/// assert!(matches!(verify_certificate(&text, &moved, &ctx), Err(CertificateError::OtherMesh { .. })));
+/// # Ok::<(), CertificateError>(())
+/// ```
 pub fn certify(input: &Judged<'_>, ctx: &Context<'_>) -> Result<Certificate, CertificateError> {
     certificate_of(input, &judge(input, &Options::default(), ctx))
 }

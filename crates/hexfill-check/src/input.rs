@@ -50,21 +50,23 @@ pub enum Parts {
 }
 
 /// What to judge, and by which rules.
+///
+/// | option | default |
+/// |---|---|
+/// | [`with_up_to`](Self::with_up_to) | [`Level::L5`]: every level |
+/// | [`with_rules`](Self::with_rules) | [`Rules::Strict`] |
+/// | [`with_parts`](Self::with_parts) | [`Parts::AsSurface`] |
+/// | [`with_betti`](Self::with_betti) | yes |
+/// | [`with_quality`](Self::with_quality) | yes, where positions are given |
+/// | [`with_overlap`](Self::with_overlap) | no |
 #[derive(Clone, Copy, PartialEq, Debug)]
-#[non_exhaustive]
 pub struct Options {
-    /// The highest level to judge. Levels 4 and 5 need positions.
-    pub up_to: Level,
-    /// Which definition of a legal complex level 2 uses.
-    pub rules: Rules,
-    /// How many parts are allowed.
-    pub parts: Parts,
-    /// Whether to compute the Betti numbers and whether the mesh is a ball.
-    pub betti: bool,
-    /// Whether to compute quality numbers (scaled Jacobian and others) where positions are given.
-    pub quality: bool,
-    /// Whether to test that the boundary does not touch or cross itself, so that the mesh does not overlap. Off by default.
-    pub overlap: bool,
+    pub(crate) up_to: Level,
+    pub(crate) rules: Rules,
+    pub(crate) parts: Parts,
+    pub(crate) betti: bool,
+    pub(crate) quality: bool,
+    pub(crate) overlap: bool,
 }
 
 impl Default for Options {
@@ -81,39 +83,39 @@ impl Default for Options {
 }
 
 impl Options {
-    /// These options with another highest level.
+    /// The highest level to judge. Levels 4 and 5 need positions.
     #[must_use]
-    pub fn up_to(self, up_to: Level) -> Self {
+    pub fn with_up_to(self, up_to: Level) -> Self {
         Self { up_to, ..self }
     }
 
-    /// These options with other rules.
+    /// Which definition of a legal complex level 2 uses.
     #[must_use]
-    pub fn rules(self, rules: Rules) -> Self {
+    pub fn with_rules(self, rules: Rules) -> Self {
         Self { rules, ..self }
     }
 
-    /// These options with another number of parts allowed.
+    /// How many parts, connected through quads, are allowed.
     #[must_use]
-    pub fn parts(self, parts: Parts) -> Self {
+    pub fn with_parts(self, parts: Parts) -> Self {
         Self { parts, ..self }
     }
 
-    /// These options with or without Betti numbers.
+    /// Whether to compute the Betti numbers and whether the mesh is a ball.
     #[must_use]
-    pub fn betti(self, betti: bool) -> Self {
+    pub fn with_betti(self, betti: bool) -> Self {
         Self { betti, ..self }
     }
 
-    /// These options with or without quality numbers.
+    /// Whether to compute quality numbers (scaled Jacobian and others) where positions are given.
     #[must_use]
-    pub fn quality(self, quality: bool) -> Self {
+    pub fn with_quality(self, quality: bool) -> Self {
         Self { quality, ..self }
     }
 
-    /// These options with or without the overlap test.
+    /// Whether to test that the boundary does not touch or cross itself, so that the mesh does not overlap.
     #[must_use]
-    pub fn overlap(self, overlap: bool) -> Self {
+    pub fn with_overlap(self, overlap: bool) -> Self {
         Self { overlap, ..self }
     }
 }

@@ -27,6 +27,22 @@ const BATCH: usize = 64;
 ///
 /// A level that fails does not hide the next ones: each is judged where the lower ones leave it a meaning (levels 2 to 5
 /// need level 1). When `ctx` says stop, the levels not finished are reported as not judged.
+///
+/// # Example
+/// Two hexes with one pair of corners exchanged in the second: the quad between them is twisted.
+/// ```
+/// use hexfill_check::{Judged, Level, Options, Rule, judge};
+/// use hexfill_mesh::Context;
+///
+/// let mut hexes = [[0, 1, 2, 3, 4, 5, 6, 7], [4, 5, 6, 7, 8, 9, 10, 11]];
+/// let options = Options::default().with_up_to(Level::L3);
+/// assert!(judge(&Judged::connectivity(12, &hexes), &options, &Context::default()).passed(Level::L3));
+///
+/// hexes[1].swap(0, 1);
+/// let report = judge(&Judged::connectivity(12, &hexes), &options, &Context::default());
+/// let failure = report.failure(Rule::QuadTwisted).expect("the same four vertices in another cyclic order");
+/// assert_eq!(failure.first[0].hexes, [0, 1]);
+/// ```
 pub fn judge(input: &Judged<'_>, options: &Options, ctx: &Context<'_>) -> Report {
     let mut run =
         Run { input, options, ctx, findings: Findings::default(), facts: Facts::default(), geometry: None, done: 0 };

@@ -319,7 +319,7 @@ fn a_sheared_box_has_the_scaled_jacobian_of_its_angle() {
 fn overlap_is_excluded_where_it_is_and_only_there() {
     let run = |s: &Sample, points: &[[f64; 3]]| {
         let input = s.judged().with_points(points);
-        let report = judge(&input, &Options::default().overlap(true), &Context::default());
+        let report = judge(&input, &Options::default().with_overlap(true), &Context::default());
         assert!(report.passed(Level::L5), "{report}");
         report.geometry.unwrap().overlap.unwrap()
     };

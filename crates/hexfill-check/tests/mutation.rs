@@ -237,7 +237,7 @@ fn every_kind_of_improper_pair_is_named() {
     ];
     for (rule, b) in cases {
         for pair in [[a, b], [b, a]] {
-            let options = Options::default().up_to(Level::L2);
+            let options = Options::default().with_up_to(Level::L2);
             let report = judge(&Judged::connectivity(17, &pair), &options, &Context::default());
             assert_eq!(report.broken_rules(), [rule.id()], "{report}");
             assert_eq!(report.failures[0].count, 1);
@@ -325,7 +325,7 @@ fn links_that_are_no_disk_or_sphere_are_named() {
     assert!(common::report(n, &hexes).passed(Level::L3));
     let two: Vec<[u32; 3]> = sphere.iter().copied().chain(sphere.iter().map(|t| t.map(|v| v + 4))).collect();
     let (n, hexes) = cone(&two);
-    let options = Options::default().parts(Parts::Any);
+    let options = Options::default().with_parts(Parts::Any);
     let report = judge(&Judged::connectivity(n, &hexes), &options, &Context::default());
     assert_eq!(report.broken_rules(), ["vertex-pinched"], "{report}");
 }
@@ -345,7 +345,7 @@ fn parts_are_counted_and_judged() {
     s.hexes.push(s.hexes[0].map(|v| v + 8));
     s.n = 16;
     let alone = Judged::connectivity(s.n, &s.hexes);
-    let run = |j: &Judged<'_>, parts| judge(j, &Options::default().parts(parts), &Context::default());
+    let run = |j: &Judged<'_>, parts| judge(j, &Options::default().with_parts(parts), &Context::default());
     assert_eq!(run(&alone, Parts::AsSurface).broken_rules(), ["mesh-disconnected"]);
     assert!(run(&alone, Parts::Any).no_failure());
     // With a surface of two parts it is as asked.

@@ -208,7 +208,7 @@ proptest! {
     /// The lemma of `topology/star.rs`, against all pairs of hexes.
     #[test]
     fn pair_kinds_are_proper_intersection((n, hexes) in complexes()) {
-        let report = judge(&Judged::connectivity(n, &hexes), &Options::default().up_to(Level::L2), &Context::default());
+        let report = judge(&Judged::connectivity(n, &hexes), &Options::default().with_up_to(Level::L2), &Context::default());
         let by_force = (0..hexes.len()).all(|i| (0..i).all(|j| proper(&hexes[i], &hexes[j])));
         let by_pairs = !PAIR_RULES.iter().any(|&r| report.breaks(r));
         prop_assert_eq!(by_force, by_pairs, "{}", report);

@@ -63,7 +63,7 @@ proptest! {
         };
         let rules = if weill { Rules::Weill } else { Rules::Strict };
         for parts in [Parts::AsSurface, Parts::Any] {
-            let options = Options::default().rules(rules).parts(parts).overlap(true);
+            let options = Options::default().with_rules(rules).with_parts(parts).with_overlap(true);
             let report = judge(&input, &options, &Context::default());
             for level in Level::ALL {
                 let failed = report.failures.iter().any(|f| f.level == level);

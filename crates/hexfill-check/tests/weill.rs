@@ -7,7 +7,7 @@ use hexfill_check::{Judged, Level, Options, Report, Rule, Rules, judge};
 use hexfill_mesh::Context;
 
 fn weill(n: usize, hexes: &[[u32; 8]]) -> Report {
-    judge(&Judged::connectivity(n, hexes), &Options::default().rules(Rules::Weill), &Context::default())
+    judge(&Judged::connectivity(n, hexes), &Options::default().with_rules(Rules::Weill), &Context::default())
 }
 
 /// The 9 cubes with one chord of the poster: 20 vertices, 22 quads.

@@ -27,7 +27,7 @@ fn run(name: &str, surface: &QuadSurface, points: Option<&[[f64; 3]]>) {
     drop(made);
     let before_check = peak_gib();
     let start = Instant::now();
-    let options = hexfill_check::Options::default().up_to(Level::L3).betti(false);
+    let options = hexfill_check::Options::default().with_up_to(Level::L3).with_betti(false);
     let report = judge(&Judged::connectivity(n_vertices, &hexes).with_surface(&quads), &options, &Context::default());
     println!(
         "{name} | {} quads | {n} hexes | {per_quad:.2} a quad | {unmatched} unmatched | construct {:.1} s, {before_check:.2} GiB | \

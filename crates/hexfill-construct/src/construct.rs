@@ -18,6 +18,19 @@ use hexfill_mesh::{Context, HexMesh, QuadSurface};
 ///
 /// # Errors
 /// [`ConstructError`]: no hex mesh exists (with the certificate), the interior is not known, or the work was stopped.
+///
+/// # Example
+/// ```
+/// use hexfill_construct::{ConstructOptions, construct};
+/// use hexfill_mesh::{Context, QuadSurface};
+///
+/// let quads = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
+/// let cube = QuadSurface::try_new(8, &quads)?;
+/// let made = construct(&cube, None, &ConstructOptions::default(), &Context::default())?;
+/// assert_eq!(made.mesh.boundary_quads().len(), 6);
+/// assert_eq!(made.mesh.n_hexes(), made.report.n_hexes());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn construct(
     surface: &QuadSurface,
     points: Option<&[[f64; 3]]>,
@@ -36,6 +49,7 @@ pub fn construct(
         stage("odd components", ctx)?;
         let ball = ball_of(corridor, &layer, &hexes, start.as_ref(), ctx)?;
         let quiet = Context { progress: None, ..*ctx };
+        // A ball is a sphere with an even number of quads, so it needs no join of its own: the recursion is one deep.
         let filling = construct(&ball.surface, ball.points.as_deref(), &ball_options(plan.library), &quiet)?;
         report.count_join(ball.n_removed(), filling.mesh.n_hexes());
         fillings.push((ball, filling));

@@ -1,6 +1,7 @@
 //! Why a surface is not filled.
 
 use crate::cells::pattern::Pattern;
+use crate::missing::MissingInterior;
 use crate::surface::existence::Existence;
 use hexfill_mesh::{HexMeshError, StopReason};
 
@@ -29,7 +30,7 @@ pub enum ConstructError {
         /// Number of components.
         components: usize,
         /// What was missing or went wrong.
-        reason: String,
+        reason: MissingInterior,
     },
     /// The tetrahedra do not fill the inner surface that was asked for.
     #[error("the tetrahedra do not have the boundary that was asked for: {reason}")]

@@ -13,9 +13,15 @@
 //! | `joins` | pairs of odd components | a ball each, filled by the construction itself |
 //!
 //! Below them: `surface` (what the surface alone tells: [`existence()`]) and `cells` (cells as data).
-//! The surface stays exactly as it is.
-//! Sources: J. Erickson, "Efficiently hex-meshing things with topology" (2014); D. Eppstein (1999);
-//! K. Verhetsel, J. Pellerin, J.-F. Remacle (2019). The book's page `construction` tells the whole story in the same order.
+//!
+//! Not for small or good meshes: it makes some tens of hexes a quad, many of them flat. It is the answer where everything else (atlas, shelling, inward
+//! flips) found none; `hexfill::fill` asks the engines in this order.
+//!
+//! Invariants: the surface stays exactly as it is, its vertices first and with their ids; every hex mesh that a theorem allows is made where the interior is
+//! known (a ball, a handlebody with positions, tetrahedra given), and a refusal names the theorem and its certificate ([`Existence`]); linear time and the same
+//! bytes for the same input. Papers: Erickson 2014 (section 4 existence, section 5 the construction), Eppstein 1999 (the buffer layer), Verhetsel et al. 2019
+//! (cells), Thurston 1993 and Mitchell 1996 (parity), Shewchuk 1997 and 1998 (Delaunay tetrahedra); the keys are those of the book's bibliography, and its page
+//! `construction` tells the whole story in the same order.
 
 #![warn(unreachable_pub)]
 
@@ -28,6 +34,7 @@ mod hexes;
 mod ids;
 mod joins;
 mod layer;
+mod missing;
 mod options;
 mod plan;
 mod positions;
@@ -50,6 +57,7 @@ pub use core::tetgen::TetgenTets;
 pub use core::triangles::core_triangles;
 pub use error::ConstructError;
 pub use ids::{EdgeId, FaceId, TetId};
+pub use missing::MissingInterior;
 pub use options::{ConstructOptions, RouteChoice};
 pub use plan::colouring::{Colouring, all_black, colouring};
 pub use plan::matching::{LightSides, light_sides};

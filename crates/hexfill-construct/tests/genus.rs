@@ -14,7 +14,7 @@ fn check(surface: &QuadSurface, made: &Construction) {
     let hexes: Vec<[u32; 8]> = made.mesh.hexes().iter().map(|h| h.map(|v| v.0)).collect();
     let quads: Vec<[u32; 4]> = surface.quads_raw();
     let input = Judged::connectivity(made.mesh.n_vertices(), &hexes).with_surface(&quads);
-    let report = judge(&input, &hexfill_check::Options::default().up_to(Level::L3), &Context::default());
+    let report = judge(&input, &hexfill_check::Options::default().with_up_to(Level::L3), &Context::default());
     assert!(report.passed(Level::L3), "{:?}", report.failures);
     // A handlebody: Euler characteristic is half that of its boundary.
     let edges = made.mesh.edges().len() as i64;

@@ -47,6 +47,15 @@ fn a_cavity_with_a_handle() {
 }
 
 #[test]
+fn too_few_positions_are_none() {
+    let (surface, points) = together(&[one_more(box_at(3, 6.0, O, true)), one_more(box_at(2, 1.0, O, false))]);
+    assert!(surface.n_components() == 2 && surface.n_quads().is_multiple_of(2));
+    assert!(!matches!(existence(&surface, Some(&points)), Existence::Unknown { .. }));
+    assert!(matches!(existence(&surface, Some(&points[1..])), Existence::Unknown { .. }));
+    assert!(matches!(existence(&surface, None), Existence::Unknown { .. }));
+}
+
+#[test]
 fn solids_apart_and_nested() {
     let parts = [
         box_at(4, 10.0, O, true),

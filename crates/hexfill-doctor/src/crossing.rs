@@ -97,12 +97,15 @@ fn cross_however(a: &[Vec<Triangle>], b: &[Vec<Triangle>]) -> bool {
 
 /// Whether two triangles meet where they should not.
 fn cross(p: &Triangle, q: &Triangle) -> bool {
+    // A triangle without area has no sides to be on; it is found for itself.
     if is_flat(p) || is_flat(q) {
         return false;
     }
     let shared: Vec<(usize, usize)> =
         (0..3).flat_map(|i| (0..3).map(move |j| (i, j))).filter(|&(i, j)| p.name[i] == q.name[j]).collect();
     let edge = |t: &Triangle, k: usize| [t.at[(k + 1) % 3], t.at[(k + 2) % 3]];
+    // What they share they may share; only what meets beyond it counts. With two corners in common that is possible
+    // in one plane alone, on one side of the edge.
     match shared[..] {
         [] => (0..3).any(|k| meets(edge(p, k), q) || meets(edge(q, k), p)),
         [(i, j)] => meets(edge(p, i), q) || meets(edge(q, j), p),

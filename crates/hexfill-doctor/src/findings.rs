@@ -104,6 +104,18 @@ fn s(n: usize) -> &'static str {
 }
 
 /// Looks at everything that points and faces tell.
+///
+/// # Example
+/// ```
+/// use hexfill_doctor::{Severity, Soup, examine};
+///
+/// let mut faces: Vec<Vec<u32>> =
+///     [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]].map(Vec::from).into();
+/// faces.pop();
+/// let found = examine(&Soup { points: Vec::new(), faces });
+/// let open = found.findings.iter().find(|finding| finding.kind == "open-edges").expect("one quad is missing");
+/// assert_eq!((open.count, open.severity), (4, Severity::Fatal));
+/// ```
 pub fn examine(soup: &Soup) -> Findings {
     let mut all = Findings { points: soup.n_points(), ..Findings::default() };
     for face in &soup.faces {

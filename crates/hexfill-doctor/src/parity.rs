@@ -100,6 +100,8 @@ fn two_to_three(surface: &QuadSurface, points: &[[f64; 3]]) -> Option<ParityChan
         let quads = [d.quad().0, surface.twin(d).quad().0];
         let way = ParityChange::TwoToThree { quads, edge, worst_sine };
         let after = soup(&way).surface().ok()?;
+        // Three quads round a vertex may share too much with their neighbours: to be even and not fillable is no
+        // gain.
         (improper_pairs(&after).count <= before).then_some(way)
     })
 }

@@ -22,6 +22,24 @@ use hexfill_mesh::{Context, HexId, HexMesh};
 ///
 /// # Errors
 /// [`EmbedError`] if the request makes no sense. Finding nothing valid is not an error.
+///
+/// # Example
+/// A cube within a cube, joined by six hexes: the corners of the inner one are free, and find their places.
+/// ```
+/// use hexfill_embed::{Options, embed};
+/// use hexfill_mesh::{Context, HexMesh, cube::FACETS};
+///
+/// let mut hexes = vec![[8, 9, 10, 11, 12, 13, 14, 15]];
+/// hexes.extend(FACETS.map(|f| f.map(|v| v as u32)).map(|[a, b, c, d]| [a + 8, b + 8, c + 8, d + 8, a, b, c, d]));
+/// let mesh = HexMesh::try_new(16, &hexes)?;
+/// let corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]];
+/// let mut points = corners.map(|p| p.map(f64::from)).to_vec();
+/// points.resize(16, [0.0; 3]); // those of inner vertices are not read
+/// let made = embed(&mesh, &points, None, &Options::default(), &Context::default())?;
+/// assert!(made.report.valid_in_floating_point && made.report.scaled_jacobian > 0.5);
+/// assert_eq!(made.points[..8], points[..8]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn embed(
     mesh: &HexMesh,
     boundary_points: &[[f64; 3]],
@@ -128,6 +146,22 @@ pub fn untangle_near(
 ///
 /// # Errors
 /// As [`embed`].
+///
+/// # Example
+/// A corner pressed nearly flat bounds every mesh with one hex there, before any coordinates are looked for.
+/// ```
+/// use hexfill_embed::{quick_star_bound, star_bounds};
+/// use hexfill_mesh::HexMesh;
+///
+/// let mesh = HexMesh::try_new(8, &[[0, 1, 2, 3, 4, 5, 6, 7]])?;
+/// let corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]];
+/// let mut points = corners.map(|p| p.map(f64::from));
+/// points[6] = [0.51, 0.51, 1.0];
+/// let worst = star_bounds(&mesh, &points)?.into_iter().min_by(|a, b| a.bound.total_cmp(&b.bound)).unwrap();
+/// assert_eq!(worst.vertex.index(), 6);
+/// assert!(worst.bound < 0.05 && worst.bound <= quick_star_bound(&mesh, &points)?);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn star_bounds(mesh: &HexMesh, boundary_points: &[[f64; 3]]) -> Result<Vec<StarBound>, EmbedError> {
     let normal = Normal::new(mesh, boundary_points, None)?;
     let mut stars = star_bounds_of(&normal.problem, &normal.points);

@@ -24,9 +24,14 @@
 //! Boundary vertices keep the bits they were given. Nothing here is a proof: that is for `hexfill-check`.
 //! What bounds every mesh of a surface, or every one-edge layer, is known before there is one ([`surface_limits`]).
 //! Surfaces without coordinates get those of the canonical polyhedron ([`canonical_polyhedron`]).
-//! Sources: V. Garanzha et al., "Foldover-free maps in 50 lines of code" (2021); A. Johnen, J.-C. Weill, J.-F. Remacle, "Robust and efficient
-//! validation of the linear hexahedral element" (2017); A. Bobenko, B. Springborn, "Variational principles for circle patterns and Koebe's theorem"
-//! (2004); J. Nocedal, S. Wright, "Numerical optimization" (2006). The book's page `embedding` tells the whole story.
+//!
+//! Not for moving the boundary, and not for a mesh whose connectivity is to change: a mesh that no positions make valid stays invalid, and the report says
+//! by how many cells ([`EmbedReport::n_invalid`]) and whether the boundary itself forbids it ([`EmbedReport::is_impossible`]).
+//!
+//! Invariants: the same bytes for any number of threads as long as no clock ends the work; a step is kept only if the worst value over whole cells rises;
+//! positions are scaled by powers of two only, so that no bit is lost. Papers: Garanzha et al. 2021 (untangling), Johnen, Weill, Remacle 2017 (whole cells),
+//! Tutte 1963 (starts), Bobenko, Springborn 2004 and Springborn 2005 (canonical polyhedron), Nocedal 1980 and Lewis and Overton 2013 (L-BFGS); the keys are
+//! those of the book's bibliography, and its page `embedding` tells the whole story.
 
 #![warn(unreachable_pub)]
 // Matrices and small vectors read like their formulas with indices.

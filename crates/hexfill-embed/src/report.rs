@@ -25,15 +25,6 @@ pub struct CellQuality {
     pub scaled_jacobian: f64,
 }
 
-fn serialize_stop<S: serde::Serializer>(stop: &StopReason, s: S) -> Result<S::Ok, S::Error> {
-    s.serialize_str(match stop {
-        StopReason::Finished => "finished",
-        StopReason::Cancelled => "cancelled",
-        StopReason::TimeLimit => "time-limit",
-        StopReason::MemoryLimit => "memory-limit",
-    })
-}
-
 /// What embedding found. Everything here was computed in floating point; certificates are made by `hexfill-check`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
@@ -71,7 +62,6 @@ pub struct EmbedReport {
     /// The ten smallest vertex-star bounds on the boundary, smallest first.
     pub star_bounds: Vec<StarBound>,
     /// Why the work ended.
-    #[serde(serialize_with = "serialize_stop")]
     pub stop: StopReason,
 }
 

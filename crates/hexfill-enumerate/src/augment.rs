@@ -52,12 +52,15 @@ fn accept_strict(child: &Complex, glued: u8) -> Option<Accepted> {
     let mut ties = 0u16;
     for a in 0..=new {
         if rivals >> a & 1 == 1 {
+            // The child chooses a greater cube for its last one and is made from there: settled without a labelling.
             if invariants[a] > invariants[new] {
                 return None;
             }
             ties |= u16::from(invariants[a] == invariants[new]) << a;
         }
     }
+    // Ties by the canonical labelling, which cannot tell cubes of one orbit apart: the child is accepted from any of
+    // them.
     let labelling = search(child, &invariants);
     is_first(&labelling, ties, new).then_some(Accepted { labelling, removable: rivals.count_ones() })
 }
@@ -136,6 +139,8 @@ impl<'a> Walk<'a> {
         siblings.clear();
         self.params.extend(parent, true, |child, glued| {
             if let Some(accepted) = self.accept(child, glued)
+                // Two accepted children of one parent are isomorphic only by an automorphism of the parent: one
+                // without symmetry needs no memory of its children.
                 && (automorphisms == 1 || siblings.insert(accepted.labelling.code.hash128()))
             {
                 out.push((*child, accepted.labelling.automorphisms));

@@ -44,6 +44,17 @@ const PLACE: [[u8; 8]; 6] = {
 
 impl Boundary {
     /// The boundary of a complex.
+    ///
+    /// # Example
+    /// ```
+    /// use hexfill_enumerate::{Boundary, Complex};
+    ///
+    /// let two = Complex::from_cubes(&[[0, 1, 2, 3, 4, 5, 6, 7], [4, 5, 6, 7, 8, 9, 10, 11]])?;
+    /// let boundary = Boundary::of(&two);
+    /// assert_eq!((boundary.n_quads(), boundary.n_chords()), (10, 4));
+    /// assert_eq!(boundary.key().to_string(), "8x[4,6] 2x[6,6]");
+    /// # Ok::<(), hexfill_enumerate::EnumerateError>(())
+    /// ```
     pub fn of(c: &Complex) -> Self {
         let mut b = Self {
             n_quads: 0,

@@ -194,6 +194,18 @@ pub(crate) fn cube_invariants(c: &Complex) -> [u64; MAX_CUBES] {
 }
 
 /// The canonical labelling of a complex. A few hundred nanoseconds at seven cubes.
+///
+/// # Example
+/// Two cubes side by side, in two numberings.
+/// ```
+/// use hexfill_enumerate::{Complex, canonical};
+///
+/// let a = canonical(&Complex::from_cubes(&[[0, 1, 2, 3, 4, 5, 6, 7], [4, 5, 6, 7, 8, 9, 10, 11]])?);
+/// let b = canonical(&Complex::from_cubes(&[[11, 8, 9, 10, 7, 4, 5, 6], [7, 4, 5, 6, 3, 0, 1, 2]])?);
+/// assert_eq!(a.code, b.code);
+/// assert_eq!(a.automorphisms, 16); // of a square prism, mirror images counted
+/// # Ok::<(), hexfill_enumerate::EnumerateError>(())
+/// ```
 pub fn canonical(c: &Complex) -> Labelling {
     let invariants = cube_invariants(c);
     search(c, &invariants)
@@ -207,6 +219,7 @@ pub(crate) fn search(c: &Complex, invariants: &[u64; MAX_CUBES]) -> Labelling {
     // The rarest class of cubes, the smallest value among equals.
     let mut chosen = (usize::MAX, 0u64);
     for &value in &invariants[..n] {
+        // Quadratic, in at most twelve values.
         let count = invariants[..n].iter().filter(|&&other| other == value).count();
         chosen = chosen.min((count, value));
     }
@@ -250,6 +263,8 @@ pub(crate) fn search(c: &Complex, invariants: &[u64; MAX_CUBES]) -> Labelling {
             // Directions in ascending order of the value behind them; equal ones both ways.
             let frame = &FRAMES[s as usize];
             let [x, y, z] = [1, 3, 4].map(|k: usize| value[cube[frame[k] as usize & 7] as usize & 63]);
+            // The order of directions is part of the invariant, so of six frames at a corner one is left, or those
+            // that ties make equal.
             if x <= y && y <= z {
                 walk.start_at(a as usize, s as usize);
             }
@@ -328,6 +343,8 @@ impl Walk<'_> {
                     continue;
                 }
                 visited |= 1 << (b & 15);
+                // The frame pushed through the facet: from the first flag on no further choice is made, so the code
+                // is that of the flag alone.
                 let t = COMPOSE[c.across[a][side] as usize % 48][s];
                 let other = &c.cubes[b as usize % MAX_CUBES];
                 let seen = &FRAMES[t as usize % 48];
@@ -346,6 +363,8 @@ impl Walk<'_> {
                     if word > self.best[index] {
                         return;
                     }
+                    // Codes that tie to the end belong to flags that an automorphism carries to each other;
+                    // automorphisms act freely on flags, so the ties count the group.
                     less = word < self.best[index];
                 }
                 order[found] = b;
@@ -364,6 +383,7 @@ impl Walk<'_> {
             self.first_position = [u8::MAX; MAX_CUBES];
         }
         self.automorphisms += 1;
+        // Rotations come first in the table of frames.
         self.signs |= if frame < 24 { 1 } else { 2 };
         for (i, &b) in order[..n].iter().enumerate() {
             let slot = &mut self.first_position[b as usize % MAX_CUBES];

@@ -113,6 +113,20 @@ impl Plan {
     ///
     /// # Errors
     /// [`EnumerateError::BadParameters`] unless `chunk.index < chunk.of`; [`EnumerateError::Stopped`] if the context says so.
+    ///
+    /// # Example
+    /// Two chunks that two machines may run; their counts add up to the 240 classes of five cubes.
+    /// ```
+    /// use hexfill_enumerate::{Chunk, LevelOptions, Params, Plan, Rule, Wanted};
+    /// use hexfill_mesh::Context;
+    ///
+    /// let ctx = Context::default();
+    /// let plan = Plan::prepare(&Params::new(5, Rule::Strict), &LevelOptions::default(), &ctx)?;
+    /// let mut tally = plan.run(Chunk { index: 0, of: 2 }, Wanted::default(), &ctx)?.tally;
+    /// tally.merge(&plan.run(Chunk { index: 1, of: 2 }, Wanted::default(), &ctx)?.tally);
+    /// assert_eq!(tally.classes, 240);
+    /// # Ok::<(), hexfill_enumerate::EnumerateError>(())
+    /// ```
     pub fn run(&self, chunk: Chunk, wanted: Wanted<'_>, ctx: &Context<'_>) -> Result<ChunkResult, EnumerateError> {
         if chunk.index >= chunk.of {
             return Err(EnumerateError::BadParameters {

@@ -64,6 +64,7 @@ const fn build_frames() -> [[u8; 8]; 48] {
                 map[i] = corner_at(image[0], image[1], image[2]) as u8;
                 i += 1;
             }
+            // Rotations first: whether a frame reflects is then a comparison with 24.
             let direct = axes[a].1 == (flips.count_ones().is_multiple_of(2));
             if direct {
                 out[rotations] = map;

@@ -10,6 +10,13 @@
 //! * The work falls into [chunks](Chunk) that add up; drivers are threads, job arrays and MPI, with a [`Ledger`] that
 //!   survives being killed.
 //!
+//! Not for meshes of a given boundary: most of what is enumerated has another one (`hexfill-prove` searches a boundary to the end, `hexfill-search` looks one
+//! up). Not for many cubes either: at most [`MAX_CUBES`] fit, and numbers of classes grow some ninefold with each cube.
+//!
+//! Invariants: each isomorphism class (mirror images alike) is counted once; counts and lists are the same for any number of threads and any cut into
+//! chunks; sums of 1 / |Aut| are kept exactly, as multiples of 1 / [`MASS_UNIT`]. Source: Weill (key of the book's bibliography); canonical augmentation as in
+//! Brinkmann, McKay 2007.
+//!
 //! ```
 //! use hexfill_enumerate::{LevelOptions, Params, Plan, Rule, Wanted, run_whole};
 //! use hexfill_mesh::Context;

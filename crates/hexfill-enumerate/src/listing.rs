@@ -41,6 +41,15 @@ impl FromStr for ListFormat {
 ///
 /// # Errors
 /// [`EnumerateError::BadCode`] if the code is of no complex, or of none that the rule can make.
+///
+/// # Example
+/// ```
+/// use hexfill_enumerate::{Complex, ListFormat, Rule, canonical, line};
+///
+/// let one = canonical(&Complex::cube()).code;
+/// assert_eq!(line(&one, ListFormat::Hexes, Rule::Strict)?, "8 1 0 1 2 3 4 5 6 7");
+/// # Ok::<(), hexfill_enumerate::EnumerateError>(())
+/// ```
 pub fn line(code: &Code, format: ListFormat, rule: Rule) -> Result<String, EnumerateError> {
     match format {
         ListFormat::Signature => Ok(hex_signature(&code.decode()?.to_hex_mesh()?)?),

@@ -43,6 +43,20 @@ const TOP: usize = 5;
 ///
 /// # Panics
 /// If `parent` has [`MAX_CUBES`] cubes.
+///
+/// # Example
+/// One more cube on a cube: always the same complex, glued by one quad.
+/// ```
+/// use hexfill_enumerate::{Complex, StrictOptions, canonical, extend_strict};
+/// use std::collections::BTreeSet;
+///
+/// let mut names = BTreeSet::new();
+/// extend_strict(&Complex::cube(), StrictOptions::default(), |child, n_glued| {
+///     assert_eq!((child.n_cubes(), n_glued), (2, 1));
+///     names.insert(canonical(child).code.to_text());
+/// });
+/// assert_eq!(names.len(), 1);
+/// ```
 pub fn extend_strict(parent: &Complex, options: StrictOptions, mut visit: impl FnMut(&Complex, u8)) {
     assert!(parent.n_cubes() < MAX_CUBES, "no room for one more cube");
     let boundary = Boundary::of(parent);
@@ -63,6 +77,8 @@ pub fn extend_strict(parent: &Complex, options: StrictOptions, mut visit: impl F
                 must_touch |= 1 << a;
             }
         }
+        // N has one facet for each cube it touches: more cubes than that cannot all be touched, so at the limit
+        // nothing is left.
         if must_touch.count_ones() > u32::from(limit) {
             limit -= 1;
             must_touch = 0;

@@ -151,7 +151,7 @@ fn every_mesh_passes_the_judge_under_the_rule_it_claims() {
             for code in &classes(n, rule).codes {
                 let c = mesh_of(code, rule).unwrap();
                 let cubes = c.cubes_wide();
-                let options = Options::default().rules(rules).up_to(Ladder::L2);
+                let options = Options::default().with_rules(rules).with_up_to(Ladder::L2);
                 let report = judge(&Judged::connectivity(c.n_vertices(), &cubes), &options, &ctx);
                 assert!(report.no_failure(), "{rule} {}: {report}", code.to_text());
                 assert!(c.to_hex_mesh().is_ok());

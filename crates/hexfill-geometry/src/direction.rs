@@ -20,6 +20,17 @@ pub struct Best {
 /// the unit edges round a vertex the value is the best worst scaled Jacobian a single further edge can have there.
 ///
 /// Zero normals give 0. No normals at all: value 1 by convention. Linear time where the value is positive, else cubic.
+///
+/// # Example
+/// Three axes, and a fourth edge between them: the diagonal is best, with cos 54.7 degrees to each.
+/// ```
+/// use hexfill_geometry::best_direction;
+///
+/// let best = best_direction(&[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+/// assert!((best.value - 1.0 / 3f64.sqrt()).abs() < 1e-12);
+/// // Opposite normals: no direction is better than across both.
+/// assert!(best_direction(&[[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]]).value.abs() < 1e-12);
+/// ```
 pub fn best_direction(normals: &[Vector]) -> Best {
     let Some(&first) = normals.first() else { return Best { value: 1.0, direction: [0.0, 0.0, 1.0] } };
     if let Some(u) = nearest_of_hull(normals, first).and_then(unit) {

@@ -12,6 +12,18 @@ pub fn solid_angle([a, b, c]: [Vector; 3]) -> f64 {
 }
 
 /// The winding number of a closed surface of triangles round `p`: 1 inside of one that faces outward, 0 outside. Linear time.
+///
+/// # Example
+/// ```
+/// use hexfill_geometry::{halves, winding_number};
+///
+/// let quads = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
+/// let corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]];
+/// let at = |v: usize| corners[v].map(f64::from);
+/// let triangles: Vec<_> = quads.iter().flat_map(|quad| halves(quad.map(at))).collect();
+/// assert!((winding_number(triangles.iter().copied(), [0.5; 3]) - 1.0).abs() < 1e-9); // once round what is inside
+/// assert!(winding_number(triangles.iter().copied(), [2.0; 3]).abs() < 1e-9);
+/// ```
 pub fn winding_number(triangles: impl IntoIterator<Item = [Vector; 3]>, p: Vector) -> f64 {
     let angles = triangles.into_iter().map(|t| solid_angle(t.map(|x| sub(x, p))));
     angles.sum::<f64>() / (2.0 * TAU)

@@ -286,6 +286,16 @@ impl MeshData {
     }
 
     /// What `format` would drop without refusing: tags and data it has no place for, one sentence each.
+    ///
+    /// # Example
+    /// ```
+    /// use hexfill_io::{Format, MeshData};
+    ///
+    /// let points = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+    /// let mesh = MeshData { quad_tags: Some(vec![7]), ..MeshData::from_quads(points, vec![[0, 1, 2, 3]]) };
+    /// assert!(mesh.losses(Format::Vtu).is_empty());
+    /// assert_eq!(mesh.losses(Format::Off).len(), 1); // one sentence: tags of quads
+    /// ```
     pub fn losses(&self, format: Format) -> Vec<String> {
         let mut losses = Vec::new();
         let mut lost = |is_lost: bool, what: &str| {

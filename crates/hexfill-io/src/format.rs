@@ -194,6 +194,17 @@ impl Format {
     ///
     /// # Errors
     /// [`FormatError::UnknownExtension`] with the list of those known.
+    ///
+    /// # Example
+    /// ```
+    /// use hexfill_io::Format;
+    /// use std::path::Path;
+    ///
+    /// assert_eq!(Format::from_path(Path::new("part.INP"))?, Format::Inp);
+    /// assert_eq!(Format::from_path(Path::new("part.vtk.zst"))?, Format::Vtk);
+    /// assert!(Format::from_path(Path::new("part.step")).is_err());
+    /// # Ok::<(), hexfill_io::FormatError>(())
+    /// ```
     pub fn from_path(path: &Path) -> Result<Self, FormatError> {
         let stem = Compression::from_path(path).and_then(|_| path.file_stem()).map(Path::new);
         let extension =

@@ -7,6 +7,10 @@
 //! Nothing here trusts a file: counts are believed only as far as there is data, compressed files unpack to at most 256 MiB and 16
 //! bytes for each of theirs, and every error says where it is, what was expected and what to do.
 //!
+//! Not for geometry kernels (STEP, IGES) nor triangle soups (STL): quads, and the cells of volume meshes, are what is read. Ids are 0-based in
+//! memory whatever the file counts from. What a format cannot hold is told before it is written ([`MeshData::losses`]) and refused where the mesh would
+//! not survive ([`MeshData::check_for`]).
+//!
 //! ```
 //! use hexfill_io::{Format, MeshData, read_from, write_to};
 //!
@@ -49,6 +53,18 @@ use std::path::Path;
 ///
 /// # Errors
 /// [`ReadError`] with file, line (byte for binary data), what was expected and what to do.
+///
+/// # Example
+/// ```
+/// use hexfill_io::read_path;
+///
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("open.off");
+/// std::fs::write(&path, "OFF\n4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 9\n")?;
+/// let error = read_path(&path, None).unwrap_err();
+/// assert!(error.to_string().contains("open.off:7: vertex 9 does not exist"), "{error}");
+/// # Ok::<(), std::io::Error>(())
+/// ```
 pub fn read_path(path: &Path, format: Option<Format>) -> Result<MeshData, ReadError> {
     let format = match format {
         Some(format) => format,
@@ -67,6 +83,16 @@ pub fn read_path(path: &Path, format: Option<Format>) -> Result<MeshData, ReadEr
 ///
 /// # Errors
 /// As [`read_path`].
+///
+/// # Example
+/// ```
+/// use hexfill_io::{Format, read_from};
+///
+/// let text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+/// let mesh = read_from(text.as_bytes(), Format::Obj, "square.obj")?;
+/// assert_eq!((mesh.points.len(), &mesh.quads[..]), (4, &[[0, 1, 2, 3]][..])); // OBJ counts from 1, arrays from 0
+/// # Ok::<(), hexfill_io::ReadError>(())
+/// ```
 pub fn read_from(reader: impl Read, format: Format, name: &str) -> Result<MeshData, ReadError> {
     let (unpacked, compression) =
         compress::unpacked(reader).map_err(|source| ReadError::Io { file: name.to_owned(), source })?;

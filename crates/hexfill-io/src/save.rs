@@ -27,6 +27,21 @@ pub enum Encoding {
 ///
 /// # Errors
 /// [`WriteError`]; the target is then as it was before.
+///
+/// # Example
+/// A hex written and read in a format that the name tells, packed on the way.
+/// ```
+/// use hexfill_io::{MeshData, read_path, write_path};
+///
+/// let corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]];
+/// let points = corners.map(|p| p.map(f64::from)).to_vec();
+/// let mesh = MeshData { hexes: vec![[0, 1, 2, 3, 4, 5, 6, 7]], ..MeshData::from_quads(points, vec![]) };
+/// let path = tempfile::tempdir()?.keep().join("cube.vtu.gz");
+/// write_path(&path, None, &mesh)?;
+/// assert_eq!(read_path(&path, None)?.hexes, mesh.hexes);
+/// # std::fs::remove_dir_all(path.parent().unwrap())?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn write_path(path: &Path, format: Option<Format>, data: &MeshData) -> Result<(), WriteError> {
     write_path_with(path, format, data, Encoding::Text)
 }

@@ -17,6 +17,18 @@ pub struct Weld {
 /// Merges points whose distance is at most `tolerance`, in the unit of the coordinates; with 0 those whose coordinates are equal.
 /// Chains of such points become one point. The first of each keeps its position bit for bit, its tag and its data; points keep their order,
 /// faces and cells theirs. Without coordinates nothing happens.
+///
+/// # Example
+/// A seam: two quads that share an edge in space, and no vertex.
+/// ```
+/// use hexfill_io::{MeshData, weld};
+///
+/// let points = [[0, 0], [1, 0], [1, 1], [0, 1], [1, 0], [2, 0], [2, 1], [1, 1]];
+/// let points = points.map(|[x, y]| [f64::from(x), f64::from(y), 0.0]).to_vec();
+/// let mut data = MeshData::from_quads(points, vec![[0, 1, 2, 3], [4, 5, 6, 7]]);
+/// assert_eq!(weld(&mut data, 1e-9).merged, 2);
+/// assert_eq!(data.quads, [[0, 1, 2, 3], [1, 4, 5, 2]]);
+/// ```
 pub fn weld(data: &mut MeshData, tolerance: f64) -> Weld {
     let root = merged(&data.points, tolerance);
     let mut number = vec![0u32; root.len()];

@@ -20,7 +20,7 @@ fn assert_sound(surface: &QuadSurface, points: &[[f64; 3]], laid: &LaidMesh) {
     assert!(laid.points[..points.len()] == *points, "the surface stays to the bit");
     let (hexes, quads) = (laid.mesh.hexes_raw(), surface.quads_raw());
     let judged = Judged::connectivity(laid.mesh.n_vertices(), &hexes).with_points(&laid.points).with_surface(&quads);
-    let report = judge(&judged, &Options::default().up_to(Level::L5), &Context::default());
+    let report = judge(&judged, &Options::default().with_up_to(Level::L5), &Context::default());
     assert!(report.passed(Level::L5), "{:?}", report.failures);
 }
 

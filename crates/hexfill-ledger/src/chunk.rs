@@ -17,6 +17,17 @@ pub struct Chunk {
 /// # Errors
 /// [`LedgerError::BadParameters`] unless `part.index < part.of <= chunks` and `part.of` divides `chunks`, so that the jobs
 /// partition the chunks.
+///
+/// # Example
+/// ```
+/// use hexfill_ledger::{Chunk, chunks_of_part};
+///
+/// // The second of three jobs has a third of twelve chunks.
+/// let mine: Vec<usize> = chunks_of_part(Chunk { index: 1, of: 3 }, 12)?.iter().map(|chunk| chunk.index).collect();
+/// assert_eq!(mine, [1, 4, 7, 10]);
+/// assert!(chunks_of_part(Chunk { index: 1, of: 5 }, 12).is_err()); // five does not divide twelve
+/// # Ok::<(), hexfill_ledger::LedgerError>(())
+/// ```
 pub fn chunks_of_part(part: Chunk, chunks: usize) -> Result<Vec<Chunk>, LedgerError> {
     if part.index >= part.of || chunks == 0 || !chunks.is_multiple_of(part.of) {
         return Err(LedgerError::BadParameters {

@@ -20,6 +20,16 @@ pub struct OddCycle {
 ///
 /// # Errors
 /// [`OddCycle`] if there is none.
+///
+/// # Example
+/// ```
+/// use hexfill_mesh::{QuadSurface, bipartition};
+///
+/// let quads = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
+/// let colours = bipartition(&QuadSurface::try_new(8, &quads)?)?;
+/// assert_eq!(colours, [false, true, false, true, true, false, true, false]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn bipartition(surface: &QuadSurface) -> Result<Vec<bool>, OddCycle> {
     const UNSEEN: u32 = u32::MAX;
     let dart = surface.dart_of_vertices();

@@ -47,6 +47,17 @@ impl Chord {
 }
 
 /// The chords of a surface, ordered by their smallest dart. Linear time.
+///
+/// # Example
+/// A cube has three chords, each a ring of four quads.
+/// ```
+/// use hexfill_mesh::{QuadSurface, chords};
+///
+/// let quads = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
+/// let lengths = chords(&QuadSurface::try_new(8, &quads)?).iter().map(|c| c.length()).collect::<Vec<_>>();
+/// assert_eq!(lengths, [4, 4, 4]);
+/// # Ok::<(), hexfill_mesh::SurfaceError>(())
+/// ```
 pub fn chords(surface: &QuadSurface) -> Vec<Chord> {
     let mut seen = vec![false; 4 * surface.n_quads()];
     let mut all = Vec::new();

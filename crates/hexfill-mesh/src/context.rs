@@ -57,6 +57,19 @@ pub struct Progress {
 }
 
 /// Cancellation, limits, seed and progress for one run. The default has none of them.
+///
+/// # Example
+/// ```
+/// use hexfill_mesh::{Context, StopReason};
+/// use std::sync::atomic::{AtomicBool, Ordering};
+/// use std::time::Duration;
+///
+/// let cancel = AtomicBool::new(false);
+/// let ctx = Context { cancel: Some(&cancel), ..Context::default() }.with_time_limit(Duration::from_secs(60));
+/// assert_eq!(ctx.stop(), None);
+/// cancel.store(true, Ordering::Relaxed); // from another thread, say
+/// assert_eq!(ctx.stop(), Some(StopReason::Cancelled));
+/// ```
 #[derive(Clone, Copy, Default)]
 pub struct Context<'a> {
     /// Set to `true` by the caller to stop the work.

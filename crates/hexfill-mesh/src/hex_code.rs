@@ -154,6 +154,8 @@ impl<'a> HexWalker<'a> {
                 for &i in corners {
                     let v = hex[usize::from(frame[i])];
                     let k = near.into_iter().find(|&k| vertices[k] == v).expect("glued facets have the same vertices");
+                    // As if the hex were moved across the facet: shared vertices take the places opposite, far ones
+                    // theirs, so that directions go straight on.
                     pushed[usize::from(tables.across[s][i])] = k as u8;
                     pushed[i] = tables.across[other.side()][k];
                 }

@@ -78,6 +78,18 @@ fn print(prefix: &str, forms: &[HexCanonical]) -> String {
 ///
 /// # Errors
 /// [`SignatureError::Empty`], [`SignatureError::SharedVertex`].
+///
+/// # Example
+/// ```
+/// use hexfill_mesh::{HexMesh, hex_signature, hex_symmetry_order, parse_hex_signature};
+///
+/// let one = HexMesh::try_new(8, &[[0, 1, 2, 3, 4, 5, 6, 7]])?;
+/// let turned = HexMesh::try_new(8, &[[1, 2, 3, 0, 5, 6, 7, 4]])?;
+/// assert_eq!(hex_signature(&one)?, hex_signature(&turned)?);
+/// assert_eq!(hex_symmetry_order(&one)?, 48);
+/// assert_eq!(parse_hex_signature(&hex_signature(&one)?)?.n_hexes(), 1);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn hex_signature(mesh: &HexMesh) -> Result<String, SignatureError> {
     Ok(print(PREFIX, &forms(mesh, Frames::All)?))
 }

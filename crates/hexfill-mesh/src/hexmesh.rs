@@ -111,6 +111,22 @@ impl HexMesh {
     ///
     /// # Errors
     /// [`HexMeshError`] if rule R1 fails.
+    ///
+    /// # Example
+    /// Two cubes on one quad: ten quads are left on the boundary.
+    /// ```
+    /// use hexfill_mesh::{Facet, HexId, HexMesh, HexMeshError};
+    ///
+    /// let hexes = [[0, 1, 2, 3, 4, 5, 6, 7], [4, 5, 6, 7, 8, 9, 10, 11]];
+    /// let mesh = HexMesh::try_new(12, &hexes)?;
+    /// assert_eq!(mesh.boundary_quads().len(), 10);
+    /// // Side 5 of the first hex is side 4 of the second.
+    /// assert_eq!(mesh.neighbour(Facet::new(HexId(0), 5)), Some(Facet::new(HexId(1), 4)));
+    ///
+    /// let twice = HexMesh::try_new(8, &[[0, 1, 2, 3, 4, 5, 6, 6]]);
+    /// assert!(matches!(twice, Err(HexMeshError::RepeatedVertex { .. })));
+    /// # Ok::<(), HexMeshError>(())
+    /// ```
     pub fn try_new(n_vertices: usize, hexes: &[[u32; 8]]) -> Result<Self, HexMeshError> {
         if hexes.len() > Self::MAX_HEXES {
             return Err(HexMeshError::TooLarge { what: "hexes", given: hexes.len(), limit: Self::MAX_HEXES });

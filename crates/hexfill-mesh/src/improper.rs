@@ -29,6 +29,17 @@ impl fmt::Display for ImproperPair {
 
 /// The improper pairs of a surface, ordered by vertex pair; `count` counts (quad, quad, vertex pair) triples.
 /// Any closed quad surface, of any genus and number of components. Linear time up to sorting round each vertex.
+///
+/// # Example
+/// Two quads back to back are a closed surface, but no two hexes may meet as they do.
+/// ```
+/// use hexfill_mesh::{QuadSurface, improper_pairs, is_proper};
+///
+/// let pillow = QuadSurface::try_new(4, &[[0, 1, 2, 3], [3, 2, 1, 0]])?;
+/// assert!(!is_proper(&pillow));
+/// assert_eq!(improper_pairs(&pillow).count, 2);
+/// # Ok::<(), hexfill_mesh::SurfaceError>(())
+/// ```
 pub fn improper_pairs(surface: &QuadSurface) -> Offenders<ImproperPair> {
     let quads = surface.quads();
     // Items: (other vertex, is edge, quad), in buckets by the smaller vertex of the pair.

@@ -30,6 +30,17 @@ impl Key {
 }
 
 /// The key of a surface. Linear time.
+///
+/// # Example
+/// ```
+/// use hexfill_mesh::{Key, QuadSurface, key};
+///
+/// let quads = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
+/// let key = key(&QuadSurface::try_new(8, &quads)?);
+/// assert_eq!(key.to_string(), "6x[4,4]");
+/// assert_eq!("6x[4,4]".parse::<Key>()?, key);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn key(surface: &QuadSurface) -> Key {
     key_of_chords(surface, &chords(surface))
 }

@@ -2,6 +2,32 @@
 //!
 //! The data structures know no algorithm; an algorithm is a free function in a file of its own.
 //! No floats and no files here: topology knows no positions.
+//!
+//! | to have | from |
+//! |---|---|
+//! | a surface that is closed, oriented and manifold, by its type | [`QuadSurface::try_new`]: quads as arrays of 0-based vertex indices |
+//! | hexes with their facet incidence | [`HexMesh::try_new`]: hexes in VTK order (see [`cube`]) |
+//! | the dual | [`chords()`], [`sheets()`] |
+//! | a name up to renumbering | [`surface_signature`], [`hex_signature`], [`canonical_surface`] |
+//! | whether a proper mesh is ruled out | [`improper_pairs`], [`bipartition()`] |
+//! | an order to build a mesh in | [`greedy_shelling`], [`is_shelling`] |
+//!
+//! Not for filling surfaces (`hexfill` does that), nor for judging foreign meshes: a [`HexMesh`] is only known to be glued facet on facet
+//! (rule R1), and `hexfill-check` says the rest.
+//!
+//! Invariants: ids are 0-based and `u32`; a facet belongs to one hex or two, an edge of a surface to two quads; results come in order of ids,
+//! never in that of a hash map. Papers: Thurston 1993, Mitchell 1996 and Folwell, Mitchell 1999 (sheets), Weill (keys), Brinkmann et al. 2005 and
+//! Brinkmann, McKay 2007 (spheres and their codes), Goaoc et al. 2019 (shellings), Tarjan 1975 (forests); the keys are those of the book's bibliography.
+//!
+//! ```
+//! use hexfill_mesh::{QuadSurface, chords, surface_symmetry_order};
+//!
+//! let quads = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
+//! let cube = QuadSurface::try_new(8, &quads)?;
+//! assert_eq!(chords(&cube).len(), 3);
+//! assert_eq!(surface_symmetry_order(&cube), 48);
+//! # Ok::<(), hexfill_mesh::SurfaceError>(())
+//! ```
 
 mod bipartition;
 mod buckets;

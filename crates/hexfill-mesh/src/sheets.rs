@@ -41,6 +41,18 @@ impl Sheet {
 }
 
 /// The sheets of a mesh, ordered by their first crossing. Time as a sort of 12 edges a hex.
+///
+/// # Example
+/// Two cubes in a row: one sheet runs between them along both, and one crosses each.
+/// ```
+/// use hexfill_mesh::{HexMesh, sheets};
+///
+/// let mesh = HexMesh::try_new(12, &[[0, 1, 2, 3, 4, 5, 6, 7], [4, 5, 6, 7, 8, 9, 10, 11]])?;
+/// let mut sizes: Vec<usize> = sheets(&mesh).iter().map(|s| s.n_hexes()).collect();
+/// sizes.sort();
+/// assert_eq!(sizes, [1, 1, 2, 2]);
+/// # Ok::<(), hexfill_mesh::HexMeshError>(())
+/// ```
 pub fn sheets(mesh: &HexMesh) -> Vec<Sheet> {
     let edges = mesh.edges();
     // The edges are sorted, so those of one smaller vertex are together: a short search where all of them would be a long one.

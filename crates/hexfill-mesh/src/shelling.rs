@@ -15,6 +15,19 @@ use std::collections::BTreeSet;
 /// A shelling order of a mesh, if the greedy search finds one: each hex meets the earlier ones in a disk (the last hex of a closed mesh in a sphere).
 /// The search prefers hexes that share many facets, lowest id first, and starts from a few hexes spread over the mesh.
 /// Near linear time a start for bounded valences. `None` also for an empty mesh.
+///
+/// # Example
+/// Three cubes in a row, the middle one listed last: it cannot close a gap between two that are apart.
+/// ```
+/// use hexfill_mesh::{HexId, HexMesh, greedy_shelling, is_shelling};
+///
+/// let row = [[0, 1, 2, 3, 4, 5, 6, 7], [8, 9, 10, 11, 12, 13, 14, 15], [4, 5, 6, 7, 8, 9, 10, 11]];
+/// let mesh = HexMesh::try_new(16, &row)?;
+/// let order = greedy_shelling(&mesh).expect("a row of cubes is shelled from its end");
+/// assert!(is_shelling(&mesh, &order));
+/// assert!(!is_shelling(&mesh, &[HexId(0), HexId(1), HexId(2)]));
+/// # Ok::<(), hexfill_mesh::HexMeshError>(())
+/// ```
 pub fn greedy_shelling(mesh: &HexMesh) -> Option<Vec<HexId>> {
     const STARTS: usize = 8;
     let n = mesh.n_hexes();
@@ -106,6 +119,8 @@ impl<'a> Shelling<'a> {
             let last = order.len() + 1 == self.mesh.n_hexes();
             for v in self.mesh.hex(h) {
                 for &other in &self.at_vertex[self.start[v.index()]..self.start[v.index() + 1]] {
+                    // What may be added changes only at vertices of the hex just added, so ranks are kept up to date
+                    // locally.
                     let now =
                         if state.added[other.index()] { None } else { state.shared_facets(other, last).map(|n| 6 - n) };
                     let before = std::mem::replace(&mut rank[other.index()], now);
@@ -165,6 +180,7 @@ impl<'a> State<'a> {
         if n_built == n {
             return true;
         }
+        // Whether a set can be finished does not depend on the order it was built in.
         dead.insert(built)
             && (0..n).filter(|&h| !self.added[h]).any(|h| {
                 let next = HexId::new(h);
@@ -181,6 +197,8 @@ impl<'a> State<'a> {
         });
         let n = shared.iter().filter(|s| **s).count() as u32;
         let opposite_pairs = (0..3).filter(|&k| shared[2 * k] && shared[2 * k + 1]).count();
+        // On the surface of a cube two facets are a disk unless opposite, four unless they are a ring, and a ring has
+        // two opposite pairs.
         let disk = match n {
             0 => false,
             2 => opposite_pairs == 0,

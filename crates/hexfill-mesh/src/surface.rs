@@ -128,6 +128,25 @@ impl QuadSurface {
     ///
     /// # Errors
     /// [`SurfaceError`], naming the first offenders and their number.
+    ///
+    /// # Example
+    /// ```
+    /// use hexfill_mesh::{QuadSurface, SurfaceError};
+    ///
+    /// let mut quads = vec![[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
+    /// let cube = QuadSurface::try_new(8, &quads)?;
+    /// assert_eq!((cube.n_edges(), cube.genus(), cube.is_sphere()), (12, 0, true));
+    ///
+    /// quads[1].reverse();
+    /// assert_eq!(QuadSurface::try_new(8, &quads)?.reversed().len(), 1);
+    ///
+    /// quads.pop();
+    /// match QuadSurface::try_new(8, &quads) {
+    ///     Err(SurfaceError::Open { edges }) => assert_eq!(edges.count, 4),
+    ///     other => panic!("{other:?}"),
+    /// }
+    /// # Ok::<(), SurfaceError>(())
+    /// ```
     pub fn try_new(n_vertices: usize, quads: &[[u32; 4]]) -> Result<Self, SurfaceError> {
         if quads.is_empty() {
             return Err(SurfaceError::Empty);
@@ -224,6 +243,8 @@ impl QuadSurface {
             }
         }
         if !non_manifold.is_empty() {
+            // A quad listed twice shows as edges with too many quads; its copies are the cause and what there is to
+            // remove.
             let quads = self.copies();
             if !quads.is_empty() {
                 return Err(SurfaceError::RepeatedQuads { quads });
@@ -290,6 +311,8 @@ impl QuadSurface {
                     }
                 }
             }
+            // Which of the two orientations is wanted nobody says: the one that most quads have already, so that few
+            // change.
             let minority_is_flipped = 2 * members.iter().filter(|&&q| flip[q]).count() <= members.len();
             if !minority_is_flipped {
                 for q in members {
@@ -320,6 +343,8 @@ impl QuadSurface {
                 continue;
             }
             seen[v.index()] = true;
+            // Edges are in two quads each, so the fan at a dart closes; quads it does not reach are a fan of their
+            // own, pinched on.
             if self.round_vertex(d).count() as u32 != self.degree(v) {
                 bad.insert(v);
             }

@@ -73,6 +73,19 @@ impl Form {
 }
 
 /// The canonical name of a surface up to isomorphism and reflection. See the module page.
+///
+/// # Example
+/// The name does not depend on how vertices and quads are numbered, and it can be read back.
+/// ```
+/// use hexfill_mesh::{QuadSurface, parse_surface_signature, surface_signature};
+///
+/// let quads = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
+/// let renumbered = quads.map(|quad| quad.map(|v| 7 - v));
+/// let name = surface_signature(&QuadSurface::try_new(8, &quads)?);
+/// assert_eq!(name, surface_signature(&QuadSurface::try_new(8, &renumbered)?));
+/// assert_eq!(parse_surface_signature(&name)?.n_quads(), 6);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn surface_signature(surface: &QuadSurface) -> String {
     Form::smallest(surface).signature()
 }

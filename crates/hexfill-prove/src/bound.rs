@@ -19,7 +19,9 @@ pub(crate) fn most_new_vertices(state: &State, left: i32) -> Option<i32> {
     let fans = Fans::of(state);
     let ones = fans.most_singles / 2;
     let wedges = 2 * fans.regular_edges - ones + fans.irregular_darts / 2;
+    // 2 m >= 4 n + a with m = n + 2 K + C, solved for n.
     let by_vertices = (2 * (2 * left + c) - fans.new_edges).div_euclid(2);
+    // 12 K >= w + 3 m with the same m, solved for n.
     let by_edges = (6 * left - 3 * c - wedges).div_euclid(3);
     let most = by_vertices.min(by_edges);
     (most >= 0).then_some(most)

@@ -166,6 +166,8 @@ impl<F: FnMut(&Cover) -> bool> Search<'_, F> {
         }
         let p = FAR[depth];
         let near = self.cover.hex[0];
+        // A ball's mesh is bipartite as its boundary is, so a corner's colour follows from its distance to the quad:
+        // half of the vertices are out at once.
         let colour = (self.coloured >> near & 1 == 1) != (DISTANCE[p][0] % 2 == 1);
         let mut set = self.state.live();
         for o in NEAR.into_iter().chain(FAR[..depth].iter().copied()) {
@@ -183,6 +185,8 @@ impl<F: FnMut(&Cover) -> bool> Search<'_, F> {
         }
         // Elements whose image of the hex must share this corner too.
         let sharing = if depth == 3 { self.restrict_last(&mut set) } else { 0 };
+        // What is left of the set goes with every corner chosen so far, pair by pair; whole facets are looked at in
+        // `put`.
         let mut old = set & ((1 << self.n) - 1);
         while old != 0 {
             let v = old.trailing_zeros() as u8;
@@ -196,11 +200,13 @@ impl<F: FnMut(&Cover) -> bool> Search<'_, F> {
             if set & BLANK == 0 {
                 break;
             }
+            // An image that must have this corner too has it only if it fixes the new vertex.
             if sharing & !self.action.stabilizer(s) != 0 {
                 continue;
             }
             let size = self.action.orbit_size(s);
             let made = (n + size) as i32 - self.state.counts.vertices;
+            // More vertices than Euler's formula and the hexes left allow: no completion exists.
             if made > self.allowance.new_vertices || n + size >= MAX_VERTICES {
                 continue;
             }
@@ -350,6 +356,7 @@ pub(crate) fn place_orbit(state: &mut State, action: &mut Action, cover: &Cover)
     for g in 0..action.order() {
         let mut hex = cover.hex.map(|v| action.image(g, v));
         if action.reflects(g) {
+            // Seen in a mirror the order of corners turns inside out; bottom and top exchanged turn it back.
             hex = [4, 5, 6, 7, 0, 1, 2, 3].map(|i: usize| hex[i]);
         }
         if let Some(same) = state.hexes[before..].iter().find(|h| set_of(h) == set_of(&hex)) {

@@ -31,7 +31,7 @@ const PINCHED: [Rule; 3] = [Rule::VertexPinched, Rule::VertexLinkNotDisk, Rule::
 /// [`ProveError::Refused`] if it breaks another rule: the search was wrong.
 pub(crate) fn signature_of(surface: &QuadSurface, mesh: &Mesh) -> Result<Option<String>, ProveError> {
     let quads: Vec<[u32; 4]> = surface.quads_raw();
-    let options = Options::default().up_to(Level::L3).parts(Parts::One);
+    let options = Options::default().with_up_to(Level::L3).with_parts(Parts::One);
     let judged = Judged::connectivity(mesh.n_vertices, &mesh.hexes).with_surface(&quads);
     let report = judge(&judged, &options, &Context::default());
     let refused = |rules: String| ProveError::Refused { rules, hexes: mesh.hexes.clone() };

@@ -218,6 +218,8 @@ impl Plan {
                     child.covers.push(cover);
                     child.path = step(task.path, &cover);
                     let hexes = plan.walker(&child).hexes().to_vec();
+                    // What lies below images of one another under the normalizer are images again: one of them is
+                    // searched.
                     if seen.insert(code(&boundary, n_boundary, &hexes, &images)) {
                         deeper = true;
                         next.push(child);

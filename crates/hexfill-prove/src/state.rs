@@ -150,6 +150,7 @@ impl State {
         s.coloured = colour.iter().enumerate().fold(0, |set, (v, &c)| set | u128::from(c) << v);
         s.rows.set(LIVE, u128::MAX);
         for v in 0..MAX_VERTICES {
+            // A vertex is joined to itself: so no row ever offers a hex the same vertex twice.
             s.rows.set(MARKED + v, 1 << v);
         }
         for quad in surface.quads() {
@@ -357,6 +358,8 @@ impl State {
         }
         let mut quads = [NO_QUAD; 6];
         for (f, slot) in quads.iter_mut().enumerate() {
+            // Both diagonals unused: a quad nobody has. Both those of one open quad: glued on it. One of each is a
+            // quad that shares a diagonal with another one.
             let [free, other] = FACET_DIAGONALS[f].map(|[i, j]| self.body_row(hex[i]) >> hex[j] & 1 == 1);
             if free && other {
                 continue;
@@ -389,6 +392,7 @@ impl State {
                 darts[f] = std::array::from_fn(|k| 4 * q + ((k + turn) % 4) as u16);
             } else {
                 let [a, b, c, d] = facet;
+                // Written as the hex on its other side will have it, the other way round.
                 let new = self.add_quad([d, c, b, a]);
                 // Side k of the facet runs from corner k to k + 1: in the new quad that is dart (2 - k) modulo 4, run back.
                 darts[f] = std::array::from_fn(|k| 4 * new + ((6 - k) % 4) as u16);

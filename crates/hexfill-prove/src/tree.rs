@@ -109,6 +109,7 @@ impl Walker {
                 count <= fewest
             });
             self.last_count[usize::from(q)] = count as u32;
+            // Nothing covers this quad: no mesh lies below, whatever else is open.
             if count == 0 {
                 return Vec::new();
             }
@@ -144,6 +145,8 @@ impl Walker {
     /// The reason to stop, if the context says so.
     pub(crate) fn descend(&mut self, path: u64, ctx: &Context<'_>) -> Result<(), StopReason> {
         self.walked.nodes += 1;
+        // A sum, so that any division of the tree adds up to the same number: runs that agree in it have visited the
+        // same states.
         self.walked.tree_sum = self.walked.tree_sum.wrapping_add(u128::from(mix(path)));
         if self.walked.nodes.is_multiple_of(NODES_BETWEEN_STOPS)
             && let Some(reason) = ctx.stop()

@@ -152,6 +152,23 @@ impl Atlas {
 
     /// The fillings on record whose boundary is isomorphic to the cavity's, fewest hexes first; whether they fit the
     /// cavity's blocked pairs is for [`Ball::placements`] to say.
+    ///
+    /// # Example
+    /// ```
+    /// use hexfill_mesh::QuadSurface;
+    /// use hexfill_search::{Atlas, Cavity};
+    ///
+    /// // Two cubes in a row, as a surface: two hexes are the fewest.
+    /// let quads = [
+    ///     [0, 3, 2, 1], [8, 9, 10, 11],
+    ///     [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7],
+    ///     [4, 5, 9, 8], [5, 6, 10, 9], [6, 7, 11, 10], [7, 4, 8, 11],
+    /// ];
+    /// let (cavity, _) = Cavity::from_surface(&QuadSurface::try_new(12, &quads)?).expect("a small sphere");
+    /// let ball = Atlas::embedded().balls_for(&cavity).next().expect("on record");
+    /// assert_eq!(ball.n_hexes(), 2);
+    /// # Ok::<(), hexfill_mesh::SurfaceError>(())
+    /// ```
     pub fn balls_for<'a>(&'a self, cavity: &Cavity) -> impl Iterator<Item = Ball> + use<'a> {
         let mut canonical = Canonical::new();
         canonical.compute(cavity);

@@ -78,6 +78,7 @@ impl Canonical {
         let mut count = [0u8; 256];
         for d in 0..n_darts as u8 {
             let [a, b, c, e] = [0, 1, 2, 3].map(|i| dart_colour[usize::from(turn(d, i))]);
+            // The quad across makes kinds rarer, and every flag that is not tried saves a code.
             let across = dart_colour[usize::from(turn(cavity.twin[usize::from(d)], 2))];
             let across2 = dart_colour[usize::from(turn(cavity.twin[usize::from(d)], 3))];
             let hash = |p: [u32; 6]| {
@@ -98,6 +99,8 @@ impl Canonical {
         }
         // The smallest of the rarest kinds, with the count before the kind in one number; kinds that do not occur come last.
         let ranks = count.iter().zip(0u16..).map(|(&count, kind)| u16::from(count.wrapping_sub(1)) << 8 | kind);
+        // Any choice that isomorphisms respect will do, and hashes collide alike in both copies: a collision costs
+        // flags to try, never a wrong name.
         let rarest = ranks.fold(u16::MAX, u16::min) as u8;
         for d in 0..n_darts as u8 {
             for (i, mirrored) in [false, true].into_iter().enumerate() {
@@ -141,6 +144,7 @@ impl Canonical {
                 if better {
                     self.code[at] = byte;
                 } else if byte != self.code[at] {
+                    // Most flags end here after a few bytes, which is what makes the form cheap.
                     if byte > self.code[at] {
                         return;
                     }
@@ -150,6 +154,7 @@ impl Canonical {
                 at += 1;
             }
         }
+        // A smaller code makes all flags so far void; an equal one adds an automorphism.
         if better {
             self.flags.clear();
         }
@@ -238,6 +243,7 @@ pub(crate) fn decode(code: &[u8]) -> Option<Cavity> {
             if t >> 2 == reached && t & 3 == 0 {
                 reached += 1;
             }
+            // Codes come from files too: every index is looked at before it is used.
             if t >> 2 >= reached.min(n) || t == d {
                 return None;
             }
@@ -272,6 +278,7 @@ pub(crate) fn decode(code: &[u8]) -> Option<Cavity> {
         }
         cavity.n_vertices += 1;
     }
+    // Euler: closed and connected with n quads and n + 2 vertices is a sphere.
     (usize::from(cavity.n_vertices) == n + 2).then_some(cavity)
 }
 

@@ -139,6 +139,8 @@ fn shorten(known: &mut Known, targets: &[Target], breadth: &Breadth, max_hexes: 
             let limit = known.fewest(target.class).unwrap_or(BETTER_THAN_NONE + 1);
             if ctx.stop().is_some() { None } else { shorter_way(&target.sphere, limit, known, breadth) }
         };
+        // A batch is searched in what was known before it and added in order: threads do not see each other's finds,
+        // so any number of them finds the same.
         let ways: Vec<Option<Way>> = batch.par_iter().map(search).collect();
         for way in ways.into_iter().flatten() {
             let end = known.add_way(way.start, &way.classes).expect("what meets can be glued outward again");

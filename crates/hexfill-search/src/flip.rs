@@ -136,10 +136,15 @@ static KINDS: LazyLock<[KindTable; 6]> = LazyLock::new(|| {
         let survives = |k: usize| open.iter().any(|&f| touches(f, k));
         let of_covered = |e: [usize; 2]| (0..6).any(|f| covered[f] && e.iter().all(|&k| touches(f, k)));
         let of_open = |e: [usize; 2]| open.iter().any(|&f| e.iter().all(|&k| touches(f, k)));
+        // Of the hex's 28 pairs those on covered quads are used by the very quads it is glued on; all others that
+        // join old vertices must not be used by anything, or two cells would share more than a vertex, an edge or a
+        // quad of both.
         let mut must_be_free: Vec<[usize; 2]> = EDGES.into_iter().filter(|&e| !of_covered(e)).collect();
         must_be_free.extend(open.iter().flat_map(|&f| FACET_DIAGONALS[f]));
         must_be_free.extend(BODY_DIAGONALS);
         must_be_free.retain(|e| e.iter().all(|&k| old(k)));
+        // What stays forbidden after the flip: pairs of the hex between vertices still on the surface that are no
+        // edge or diagonal of a quad there. Those are told by the surface itself.
         let mut blocks: Vec<[usize; 2]> = EDGES.into_iter().filter(|&e| !of_open(e)).collect();
         blocks.extend((0..6).filter(|&f| covered[f]).flat_map(|f| FACET_DIAGONALS[f]));
         blocks.extend(BODY_DIAGONALS);
@@ -224,6 +229,7 @@ pub fn place(cavity: &Cavity, degrees: &[u8; MAX_VERTICES], flip: Flip) -> Optio
             *corner = fresh;
             fresh += 1;
         } else {
+            // The patch may touch itself beyond the edges looked at above; a hex has eight distinct corners.
             if seen >> *corner & 1 == 1 {
                 return None;
             }
@@ -410,6 +416,17 @@ fn keep_pairs(cavity: &Cavity, buried: u64, renamed: &Renamed, after: &mut Cavit
 }
 
 /// All legal flips of a cavity with at most `max_quads` quads afterwards, in ascending order.
+///
+/// # Example
+/// The cube offers nothing but its six quads: every other patch would join two ends of a diagonal that is used already.
+/// ```
+/// use hexfill_search::{Cavity, FlipKind, apply, legal_flips};
+///
+/// let flips = legal_flips(&Cavity::cube(), 24);
+/// assert_eq!(flips.len(), 6);
+/// assert!(flips.iter().all(|placement| placement.flip.kind == FlipKind::OneToFive));
+/// assert_eq!(apply(&Cavity::cube(), &flips[0]).0.n_quads(), 10);
+/// ```
 pub fn legal_flips(cavity: &Cavity, max_quads: usize) -> Vec<Placement> {
     let (marked, degrees) = (cavity.marked(), cavity.degrees());
     candidates(cavity, max_quads.min(MAX_QUADS))

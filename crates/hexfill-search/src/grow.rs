@@ -335,6 +335,20 @@ impl Growth {
     }
 
     /// Grows by one level.
+    ///
+    /// # Example
+    /// Balls of one and two hexes have one boundary each; those of three have three: a row, an L, and three hexes round an edge.
+    /// ```
+    /// use hexfill_mesh::Context;
+    /// use hexfill_search::{GrowOptions, Growth};
+    ///
+    /// let mut growth = Growth::new(GrowOptions { cap: 20, width: 1 });
+    /// assert_eq!(growth.n_classes(), 1);
+    /// growth.grow(&Context::default());
+    /// assert_eq!((growth.level(), growth.n_classes()), (2, 2));
+    /// growth.grow(&Context::default());
+    /// assert_eq!((growth.level(), growth.n_classes()), (3, 5));
+    /// ```
     pub fn grow(&mut self, ctx: &Context<'_>) -> LevelReport {
         let pending: Vec<Mutex<FxHashMap<ClassHash, PendingClass>>> =
             (0..SHARDS).map(|_| Mutex::new(FxHashMap::default())).collect();
@@ -344,6 +358,7 @@ impl Growth {
         let total = self.frontier.len() as u64;
         let level = self.level() + 1;
         let start = std::time::Instant::now();
+        // States of a level grow independently: what they bring is gathered as a set and settled when all have come.
         self.frontier.par_chunks(256).for_each_init(Canonical::new, |canonical, chunk| {
             if stop.load(Ordering::Relaxed) {
                 return;
@@ -425,10 +440,13 @@ impl Growth {
                 kept += 1;
                 fewest = fewest.min(self.states[old as usize].n_blocked);
             }
+            // Within the width anything may enter, and beyond it only what blocks less than all that is kept: without
+            // this rule the growth dies out early.
             if n_blocked >= fewest && kept >= self.options.width {
                 continue;
             }
             let blocked = pack(&canonical.blocked_image(&child).0, child.n_vertices());
+            // Dominated: whatever can be glued on it can be glued on the old state, which has no more hexes.
             if kept > 0 && self.states_of(class).any(|old| is_subset(&self.blocked[old as usize], &blocked)) {
                 continue;
             }
@@ -448,6 +466,7 @@ impl Growth {
     /// left out for want of memory; `None`, with nothing changed, if no room is left for any.
     fn settle(&mut self, pending: Vec<FxHashMap<ClassHash, PendingClass>>, memory_limit: Option<u64>) -> Option<u64> {
         let mut classes: Vec<(ClassHash, PendingClass)> = pending.into_iter().flatten().collect();
+        // Hash maps gave no order; this gives one that is the same for any number of threads.
         classes.par_sort_unstable_by_key(|(class, _)| *class);
         let mut thinned = self.beam.map_or(0, |beam| keep_the_least_blocked(&mut classes, beam));
         if let Some(limit) = memory_limit {

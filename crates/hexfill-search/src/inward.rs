@@ -115,6 +115,19 @@ struct Workspace {
 
 /// Fills a sphere of at most [`MAX_QUADS`] quads: the atlas first, then inward flips.
 /// `None` if the surface is not such a sphere. The surface must be 3-connected, else nothing proper exists.
+///
+/// # Example
+/// ```
+/// use hexfill_mesh::{Context, QuadSurface};
+/// use hexfill_search::{Atlas, FillOptions, fill_from_atlas};
+///
+/// let quads = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
+/// let cube = QuadSurface::try_new(8, &quads)?;
+/// let made = fill_from_atlas(&cube, Atlas::embedded(), &FillOptions::default(), &Context::default());
+/// let made = made.expect("a sphere of at most 64 quads");
+/// assert_eq!(made.fillings[0].mesh.n_hexes(), 1);
+/// # Ok::<(), hexfill_mesh::SurfaceError>(())
+/// ```
 pub fn fill_from_atlas(
     surface: &QuadSurface,
     atlas: &Atlas,

@@ -23,7 +23,7 @@ fn hexes_of_judged_filling(surface: &QuadSurface) -> Option<u64> {
     let (hexes, fresh) = ball.hexes_in(&boundary_ids, mirrored, first_new);
     let quads: Vec<[u32; 4]> = surface.quads_raw();
     let judged = Judged::connectivity((first_new + fresh) as usize, &hexes).with_surface(&quads);
-    let report = judge(&judged, &Options::default().up_to(Level::L3), &Context::default());
+    let report = judge(&judged, &Options::default().with_up_to(Level::L3), &Context::default());
     assert!(report.passed(Level::L3), "{report}");
     assert!(matches!(report.facts.ball, Some(Ball::Yes | Ball::Homology)), "{report}");
     Some(hexes.len() as u64)

@@ -13,7 +13,7 @@ fn fill(surface: &QuadSurface, beam: usize, max_cavities: u64) -> usize {
         let hexes: Vec<[u32; 8]> = filling.mesh.hexes().iter().map(|h| h.map(|v| v.0)).collect();
         let report = judge(
             &Judged::connectivity(filling.mesh.n_vertices(), &hexes),
-            &Options::default().up_to(Level::L3).quality(false),
+            &Options::default().with_up_to(Level::L3).with_quality(false),
             &Context::default(),
         );
         assert!(report.passed(Level::L3), "{report:?}");

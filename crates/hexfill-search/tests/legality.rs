@@ -27,7 +27,7 @@ fn with_hex(ball: &Grown, corners: [u8; 8]) -> ([u32; 8], u32) {
 }
 
 fn is_proper_ball(hexes: &[[u32; 8]], n_vertices: u32) -> bool {
-    let options = Options::default().up_to(Level::L3).quality(false);
+    let options = Options::default().with_up_to(Level::L3).with_quality(false);
     let report = judge(&Judged::connectivity(n_vertices as usize, hexes), &options, &Context::default());
     report.passed(Level::L3) && report.facts.ball == Some(Ball::Yes)
 }

@@ -76,7 +76,7 @@ fn main() {
         if swept.front.is_empty() {
             let quads: Vec<[u32; 4]> = surface.quads_raw();
             let input = Judged::connectivity(swept.n_vertices as usize, &swept.hexes).with_surface(&quads);
-            let options = hexfill_check::Options::default().up_to(Level::L3);
+            let options = hexfill_check::Options::default().with_up_to(Level::L3);
             verdict =
                 if judge(&input, &options, &Context::default()).passed(Level::L3) { "proper" } else { "IMPROPER" };
         }

@@ -31,6 +31,7 @@ pub(crate) fn wanted_hexes(surface: &QuadSurface, points: Option<&[[f64; 3]]>) -
         let along = sub(at(d.next()), at(d));
         let (n1, n2) = (normal(d), normal(t));
         let sine = dot(cross(n1, n2), along) / dot(along, along).sqrt();
+        // Outward normals: equal on a flat edge, apart on a convex one; the angle is that inside the solid.
         let angle = std::f64::consts::PI - sine.atan2(dot(n1, n2));
         if angle.is_finite() {
             wanted[d.index()] = (angle / std::f64::consts::FRAC_PI_2) as f32;

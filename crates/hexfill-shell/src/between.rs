@@ -47,6 +47,8 @@ pub(crate) fn between(surface: &QuadSurface, points: &[[f64; 3]]) -> Option<Vec<
     images.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     let mut best: Option<(f64, Vec<u32>)> = None;
     for &(_, d) in images.iter().take(MOST_IMAGES) {
+        // One pair of darts tells the whole image, since the surface is connected: an isomorphism is tried in linear
+        // time, nearest first.
         let Some(image) = mirrored(surface, first, Dart(d)) else { continue };
         let sum = (0..).zip(&image).filter(|(_, w)| **w != NONE);
         let sum: f64 = sum.map(|(v, &w): (usize, _)| square_distance(points[v], points[w as usize])).sum();

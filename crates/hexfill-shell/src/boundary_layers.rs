@@ -195,7 +195,7 @@ mod tests {
             let hexes = cut.hexes_raw();
             let quads: Vec<[u32; 4]> = surface.quads_raw();
             let judged = hexfill_check::Judged::connectivity(cut.n_vertices(), &hexes).with_surface(&quads);
-            let options = hexfill_check::Options::default().up_to(hexfill_check::Level::L3);
+            let options = hexfill_check::Options::default().with_up_to(hexfill_check::Level::L3);
             assert!(hexfill_check::judge(&judged, &options, &Context::default()).passed(hexfill_check::Level::L3));
         }
     }

@@ -97,6 +97,7 @@ impl Front {
     fn column(&self, from: [u32; 4], to: [u32; 4], k: u32, points: &[Point]) -> Option<(Self, Vec<Point>)> {
         let at = |v: u32| points[v as usize];
         // Seen along the column the quad at its end runs the other way.
+        // Four ways to join two quads without a twist in the orientation; the nearest corners give the least turn.
         let ends = (0..4).map(|turn: usize| [0, 1, 2, 3].map(|i: usize| to[(turn + 4 - i) % 4]));
         let far = |end: &[u32; 4]| -> f64 { (0..4).map(|i| sub(at(from[i]), at(end[i]))).map(|d| dot(d, d)).sum() };
         let end = ends.min_by(|a, b| far(a).total_cmp(&far(b)))?;

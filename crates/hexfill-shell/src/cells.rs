@@ -1,8 +1,7 @@
 //! [`Cells`]: a hex mesh that sheets can be put into, locally, and taken out of again.
 //!
 //! Invariant: `at[v]` holds the hexes at vertex v, ascending; facets are glued by their vertices, so no neighbour table has to follow
-//! the changes. A set of hexes whose surface is a sphere is *shrunk* (a local pillow; S. Mitchell, T. Tautges, *Pillowing
-//! doublets*, 1995): its surface vertices are copied, its hexes take the copies, and one new hex fills the gap over each of its facets, those
+//! the changes. A set of hexes whose surface is a sphere is *shrunk* (a local pillow; Mitchell, Tautges 1995): its surface vertices are copied, its hexes take the copies, and one new hex fills the gap over each of its facets, those
 //! on the mesh's boundary included. The mesh's boundary stays as it is, and cells that met properly still do.
 
 use hexfill_mesh::cube::{CORNER_NEIGHBOURS, FACETS};
@@ -140,6 +139,7 @@ impl Cells {
                 }
             }
         }
+        // Lists are ascending: what was added last and what came back have to find their places.
         for &v in &undo.copied {
             self.at[v as usize].sort_unstable();
         }

@@ -74,6 +74,8 @@ fn take_out(
     }
     let set = |taken: &mut Vec<bool>, to: bool| units.iter().flatten().for_each(|&r| taken[r] = to);
     set(taken, true);
+    // As a rule all rails go at once. Halving finds the few that may not with a number of attempts that grows with
+    // them and the logarithm of all.
     if let Some(coarse) = coarsen(taken) {
         *best = Some(coarse);
         return;
@@ -124,6 +126,8 @@ impl Rails {
             for d in &curve {
                 seen[d.index()] = true;
             }
+            // A crease is where the solver has to end its layers; without those edges the coarse surface would look
+            // flat there.
             let plain = |d: &Dart| (wanted[d.index()] - FLAT).abs() <= CREASE;
             if !closed || !curve.iter().all(plain) {
                 continue;
@@ -152,6 +156,8 @@ impl Rails {
             // The rail beyond the chord on the left, if it is one all along.
             let d = self.curves[r][0];
             let beyond = |d: Dart| self.of_dart[d.opposite().index()];
+            // Pairs keep for every loop how many chords it crosses modulo 2, the only thing that says whether a
+            // surface with handles bounds a hex mesh.
             let left = [d, surface.twin(d)]
                 .map(beyond)
                 .into_iter()
@@ -222,10 +228,13 @@ fn coarsen(surface: &QuadSurface, wanted: &[f32], rails: &Rails, taken: &[bool])
         grids.push(grid(surface, first, sides[0], sides[1]));
         quads.push(corners);
     }
+    // Every fine quad in a grid, once: a rail that stops inside a coarse quad would leave some over.
     if n_fine != surface.n_quads() || quads.len() < 6 {
         return None;
     }
     let coarse = QuadSurface::try_new(vertices.len(), &quads).ok()?;
+    // No theorem keeps it proper: of two chords that run in parallel nearly all along one may be what keeps two quads
+    // apart. So it is looked at.
     let same = coarse.n_components() == surface.n_components()
         && coarse.euler_characteristic() == surface.euler_characteristic()
         && coarse.reversed().is_empty();

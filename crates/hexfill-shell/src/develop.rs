@@ -69,6 +69,8 @@ impl Development {
             for i in 0..4 {
                 let (d, inward) = (Dart(4 * q + i), cross(normal, along));
                 let t = surface.twin(d);
+                // One hex: a convex edge, the next quad faces away from this one; two: as this one; three: towards
+                // it. No other number has a place in a grid.
                 let turned = match wanted[d.index()].round() as i32 {
                     1 => minus(inward),
                     2 => normal,
@@ -76,6 +78,8 @@ impl Development {
                     _ => return None,
                 };
                 let from = self.at[surface.target(d).index()];
+                // Quads that are placed already are put again: that they come out at the same place on every way is
+                // what developing means.
                 let known = self.normal[t.quad().index()] != [0; 3];
                 self.put(surface, t, turned, minus(along), from)?;
                 if !known {

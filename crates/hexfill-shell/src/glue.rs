@@ -146,12 +146,14 @@ impl Front {
     /// The hex and its open facets, before any zip.
     fn cover(&mut self, d: u32, patch: Patch, pending: &mut Pending) -> Result<(), Refused> {
         let mut covering = Covering::new(self, d, patch);
+        // Two covered quads that meet along an edge the hex keeps would give that edge the hex twice.
         if covering.meets_itself() {
             return Err(Refused::Improper);
         }
         if self.has_wants() {
             pending.cost += covering.cost(self);
         }
+        // Not refused at once: a zip may glue the new edge to the old one.
         pending.double.extend(covering.double_edges(self));
         for corner in covering.corners.iter_mut().filter(|c| **c == NONE) {
             *corner = self.push_vertex();

@@ -3,7 +3,7 @@
 //! A chord whose quads are distinct is a closed ring; taking it out leaves two sides, R and L, joined by the *rungs*, the
 //! edges the chord crosses. A layer puts one hex on every quad of R; the ring's quads become lateral facets, the top of a
 //! rim vertex is the other end of its rung, and the front is the old one with the ring contracted: all other chords
-//! survive (successive dual cycle elimination; Mueller-Hannemann, J. Graph Algorithms Appl. 5(5), 2001). If R and L are
+//! survive (successive dual cycle elimination; Müller-Hannemann 2001). If R and L are
 //! mirror images across the rungs, the same hexes close the void. On surfaces that are not spheres a set of rings whose
 //! union separates takes the place of one.
 //!
@@ -54,6 +54,7 @@ impl Places {
 
     fn get(&self, q: u32) -> Place {
         match self.mark[q as usize] {
+            // A stamp rather than a clear: looks at small sides of a large front would cost as much as the front.
             m if m == 2 * self.look => Place::Ring,
             m if m == 2 * self.look + 1 => Place::Side,
             _ => Place::Elsewhere,
@@ -149,6 +150,8 @@ pub(crate) fn consider(void: &Void, places: &mut Places, rings: Vec<Ring>) -> Ve
     let mut left_close = 0.0f32;
     for ring in &rings {
         for &d in ring {
+            // A rung has the hexes over its foot round it, which is all it will ever get: no later move reaches an
+            // edge that is buried.
             let hexes = at_rim.get(&void.target(d)).copied().unwrap_or(0) as f32;
             cost += void.length[d as usize] as f32 * square(void.wanted[d as usize] - hexes);
             let rail = prev(d) as usize;
@@ -160,6 +163,7 @@ pub(crate) fn consider(void: &Void, places: &mut Places, rings: Vec<Ring>) -> Ve
     // Sums over hash maps of small integers: exact in f32, so their order does not matter.
     cost += height as f32 * inner_degree.values().map(|&n| square(n as f32 - 4.0)).sum::<f32>();
     let fine_hexes = base_hexes * u64::from(height);
+    // Cheap conditions first; whether the sides are mirror images is for `close` to find out.
     if n_left == side.len() && void.quads.len() == n_ring + 2 * side.len() {
         let mut close = cost + left_close;
         let is_left = |q: usize| places.get(q as u32) == Place::Elsewhere;
@@ -173,6 +177,7 @@ pub(crate) fn consider(void: &Void, places: &mut Places, rings: Vec<Ring>) -> Ve
         }
         found.push(Move { rings: rings.clone(), side: side.clone(), closes: true, cost: close, fine_hexes });
     }
+    // A closed proper surface has six quads at least; a smaller front could only be closed, not layered.
     if side.len() + n_left >= 6 {
         found.push(Move { rings, side, closes: false, cost: cost + left, fine_hexes });
     }
@@ -268,6 +273,7 @@ fn layer(void: &mut Void, the: &Move) -> Option<()> {
             });
             let b = quad[(i + 1) & 3];
             // The copy of an edge across R between two vertices of the rim joins old vertices: it must be new.
+            // The table would allow it where an older cell has this edge, and two fans of hexes would share it.
             if rim.contains(&quad[i]) && rim.contains(&b) {
                 let d = 4 * q as usize + i;
                 let inner = in_side[(void.twin[d] >> 2) as usize];
@@ -285,6 +291,8 @@ fn layer(void: &mut Void, the: &Move) -> Option<()> {
         }
     }
     let n = void.quads.len();
+    // The front with the ring contracted: quads of R rise to their copies, those of L stay, and the ring's are gone,
+    // so all other chords survive as they were.
     let (mut quads, mut wanted, mut length) =
         (Vec::with_capacity(n), Vec::with_capacity(4 * n), Vec::with_capacity(4 * n));
     let mut rim_wanted: FxHashMap<u32, f32> = FxHashMap::default();
@@ -327,6 +335,7 @@ fn close(void: &mut Void, the: &Move) -> Option<()> {
     while let Some((r, l)) = work.pop() {
         match image.insert(r, l) {
             Some(old) if old == l => continue,
+            // Reached in two ways with two images: the sides are not mirror images.
             Some(_) => return None,
             None => {}
         }

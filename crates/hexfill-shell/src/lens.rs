@@ -88,6 +88,7 @@ impl LensFinder {
         // The inner vertex is the target of the first arc's entering darts and the origin of the second's.
         let mut at = front.twin(d);
         for i in 1..=limit as u32 {
+            // An arc that meets itself bounds no lens beyond this quad: chords of a lens are simple arcs.
             if self.first.is_set(at / 4) {
                 break;
             }
@@ -104,8 +105,11 @@ impl LensFinder {
             }
             self.second.set(at / 4, 0);
             self.arcs[1].push(at);
+            // Only ever nearer on the first arc: a crossing farther out on both arcs bounds a lens that holds the one
+            // before, or none.
             if let Some(i) = self.first.get(at / 4).filter(|&i| i < nearest) {
                 nearest = i;
+                // Either they close round a corner on the same side, which is a lens, or they cross and go on.
                 let meets = next(self.arcs[0][i as usize - 1]) == at;
                 if meets && self.flood(front, d, i as usize, j, most) {
                     std::mem::swap(&mut self.best, &mut self.found);
@@ -152,6 +156,8 @@ impl LensFinder {
                 }
             }
         }
+        // Connected by the flood and bounded by two arcs: it is a disk iff the curvature says so. A handle or a hole
+        // inside would lower the sum.
         curvature == 2
     }
 }

@@ -5,6 +5,21 @@
 //! smallest lens of its dual -> `zip` flips that empty it -> `sweep` until nothing is left. Both know by a pair table (`pairs`)
 //! what is joined already.
 //! Before them: `plug` cuts handles, `bridge` joins cavities to the outside. Without any sweep: `polycube`, `between`.
+//!
+//! | question | verb |
+//! |---|---|
+//! | meshes of a surface, all engines | [`shell()`] |
+//! | one sweep by flips, and what it left | [`sweep()`] |
+//! | a second inner edge at vertices that no single one can serve | [`split_stars`] |
+//! | one sheet more round some hexes | [`pillow()`] |
+//! | thin layers under the surface | [`cut_boundary_layers`] |
+//!
+//! Not a guarantee: a surface whose chords cross themselves may be left with a void ([`Shelling::left`]); `hexfill-construct` fills every surface that can
+//! be filled, with more hexes. What is returned is complete, but it is for `hexfill-check` to judge.
+//!
+//! Invariants: the surface's vertices keep their ids and come first; every stage is a ball glued on (both engines refuse a hex that would use a pair of
+//! vertices twice, the theorem of `hexfill-search`'s page on flips); the same result for any number of threads. Papers: Thurston 1993 and Folwell, Mitchell
+//! 1999 (sheets swept by curve contraction), Bern, Eppstein and Erickson 2002 (flips), Gordon, Hall 1973 (blocks); the keys are those of the book's bibliography.
 
 mod angles;
 mod between;

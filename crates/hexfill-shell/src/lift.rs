@@ -169,6 +169,8 @@ pub(crate) fn segments(coarse: &Coarse, hexes: &[[u32; 8]]) -> Result<FxHashMap<
         let Some(&class) = classes.of.get(&e) else { continue };
         let slot = &mut of_class[class as usize];
         let length = coarse.length[d.index()];
+        // A sheet may end in several chords. Nothing in a flip keeps their multiplicities equal; a mesh in which they
+        // differ cannot be cut.
         if *slot != 0 && *slot != length {
             return Err(MultiplicityClash);
         }
@@ -241,6 +243,8 @@ impl Lattice {
             ];
             for (from, to, mut points) in sides {
                 let (from, to) = (corners[from], corners[to]);
+                // Points of an edge are kept from its smaller vertex on, so that every hex at it reads them in one
+                // order.
                 if from > to {
                     points.reverse();
                 }
@@ -316,6 +320,7 @@ impl Lattice {
                 }
             }
         }
+        // What is left is inside the hex and nobody else's.
         for p in &mut points {
             if *p == u32::MAX {
                 *p = fresh();

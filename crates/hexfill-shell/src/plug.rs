@@ -53,6 +53,8 @@ impl Quadrangulation {
 
     /// All that are tried for a k-gon.
     fn all(k: usize) -> Vec<Self> {
+        // A fan needs no inner vertex and is as small as can be; a grid has more hexes, but joins opposite strands
+        // straight across.
         let mut all: Vec<Self> = if k == 4 { vec![Self::fan(4, 0)] } else { (0..k).map(|i| Self::fan(k, i)).collect() };
         let most = if k <= LARGEST_GRID { k / 2 } else { 0 };
         for a in 1..most {
@@ -296,6 +298,8 @@ impl Front {
             let strands = Strands::of(self, ring);
             let cuts = cuts.entry(ring.0.len()).or_insert_with_key(|&k| Quadrangulation::all(k));
             for (c, cut) in cuts.iter().enumerate() {
+                // Strands are fixed for a ring, so a quadrangulation is judged by union-find on them and nothing is
+                // built before it is chosen.
                 plugs.push((strands.self_crossings(cut), cut.quads.len(), r, c));
             }
         }

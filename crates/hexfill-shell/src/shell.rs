@@ -83,6 +83,30 @@ const MOST_FINE: usize = 20_000;
 
 /// Sweeps a surface inward. `points`: one position per vertex of the surface, outward orientation; without them every edge is
 /// taken for flat.
+///
+/// # Example
+/// A box of 1 by 1 by 2 unit cells: one chord runs round its middle twice, in parallel, and is compressed to one cube.
+/// ```
+/// use hexfill_mesh::{Context, QuadSurface};
+/// use hexfill_shell::{ShellOptions, shell};
+///
+/// let quads = [
+///     [0, 3, 2, 1], [8, 9, 10, 11],
+///     [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7],
+///     [4, 5, 9, 8], [5, 6, 10, 9], [6, 7, 11, 10], [7, 4, 8, 11],
+/// ];
+/// let points: Vec<[f64; 3]> = [0, 1, 2]
+///     .into_iter()
+///     .flat_map(|z| [[0, 0, z], [1, 0, z], [1, 1, z], [0, 1, z]])
+///     .map(|p| p.map(f64::from))
+///     .collect();
+/// let surface = QuadSurface::try_new(12, &quads)?;
+/// let made = shell(&surface, Some(&points), &ShellOptions::default(), &Context::default());
+/// assert_eq!(made.coarse_quads, 6);
+/// assert_eq!(made.meshes[0].mesh.n_hexes(), 2);
+/// assert!(made.meshes[0].cost < 1e-3); // every edge has the hexes its angle wants
+/// # Ok::<(), hexfill_mesh::SurfaceError>(())
+/// ```
 pub fn shell(
     surface: &QuadSurface,
     points: Option<&[[f64; 3]]>,

@@ -63,6 +63,7 @@ pub(crate) fn solve(start: &Void, restarts: u64, ctx: &Context<'_>) -> Vec<Sweep
 
 /// One sweep; `None` if it was stopped.
 fn sweep(start: &Void, restart: u64, ctx: &Context<'_>) -> Option<Sweep> {
+    // A restart depends on its number alone, so any number of threads draws the same.
     let mut random = Random::new(ctx.seed.wrapping_mul(0x1_0001).wrapping_add(restart));
     let per_hex = PER_HEX[(restart % PER_HEX.len() as u64) as usize];
     let mut sweep = Sweep { void: start.clone(), cost: 0.0, fine_hexes: 0, restart };
@@ -81,6 +82,8 @@ fn sweep(start: &Void, restart: u64, ctx: &Context<'_>) -> Option<Sweep> {
             })
             .collect();
         order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        // Legality is asked in order of cost and only until a move is made: the only way to ask is to glue and to
+        // take back.
         let Some(&(_, chosen)) = order.iter().find(|(_, i)| make(&mut sweep.void, &moves[*i as usize])) else { break };
         let chosen = moves.swap_remove(chosen as usize);
         sweep.cost += chosen.cost;
@@ -105,6 +108,8 @@ fn moves(void: &Void, places: &mut Places) -> Vec<Move> {
             found.extend(consider(void, places, set.iter().map(|&r| rings[r].clone()).collect()));
         }
     }
+    // Two rings that do not separate alone may separate together, as the inner and outer equator of a torus do; all
+    // pairs are looked at, so only while they are few.
     if rings.len() <= MOST_PAIRED && !separates.iter().all(|&s| s) {
         for i in 0..rings.len() {
             for j in i + 1..rings.len() {

@@ -104,6 +104,7 @@ pub fn stir_front(front: &mut Front, rounds: u32, options: &SweepOptions<'_>, ct
             *front = closed;
             return None;
         }
+        // As many quads count as no worse: to walk along a plateau is what leaves a local minimum.
         if front.n_quads() <= from.n_quads() {
             from = front.clone();
         } else {
@@ -167,6 +168,8 @@ struct Search<'a> {
 impl Search<'_> {
     /// Makes one flip that lowers the energy: the first, or the best.
     fn one(&mut self, moves: &[Move], best: bool, ctx: &Context<'_>) -> Result<bool, StopReason> {
+        // Energy counts quads and self-crossings: on spheres whose chords are simple the sweep closes the void, so
+        // each self-crossing less is as much worth as a quad less.
         let mut found: Option<((usize, usize), Move)> = None;
         for (i, &m) in moves.iter().enumerate() {
             if i % 64 == 0 {
@@ -186,6 +189,8 @@ impl Search<'_> {
                     found = Some((rank, m));
                 }
             }
+            // The best so far is taken back as well and made again in the end: to keep it would take a copy of the
+            // front.
             self.sweeper.front.take_back(mark);
         }
         let Some((_, m)) = found else { return Ok(false) };

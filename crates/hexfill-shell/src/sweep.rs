@@ -35,6 +35,22 @@ pub struct Swept {
 /// need `points`, a position for each vertex of the surface; without them a surface with handles is not filled to the end.
 ///
 /// A surface with quads that meet improperly has no proper filling and comes back as it is: no hexes, all quads left.
+///
+/// # Example
+/// ```
+/// use hexfill_mesh::{Context, QuadSurface};
+/// use hexfill_shell::{SweepOptions, sweep};
+///
+/// let quads = [
+///     [0, 3, 2, 1], [8, 9, 10, 11],
+///     [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7],
+///     [4, 5, 9, 8], [5, 6, 10, 9], [6, 7, 11, 10], [7, 4, 8, 11],
+/// ];
+/// let surface = QuadSurface::try_new(12, &quads)?;
+/// let swept = sweep(&surface, None, &SweepOptions::default(), &Context::default());
+/// assert!(swept.front.is_empty() && swept.hexes.len() == 2);
+/// # Ok::<(), hexfill_mesh::SurfaceError>(())
+/// ```
 pub fn sweep(
     surface: &QuadSurface,
     points: Option<&[[f64; 3]]>,

@@ -102,6 +102,8 @@ impl<'a> Sweeper<'a> {
             let Some(lens) = self.current((level, size, 0, corner, version)) else { continue };
             let mark = self.front.mark();
             let most = if self.front.has_wants() { LEVELS[usize::from(level)] } else { f32::INFINITY };
+            // A lens that one level cannot empty is no lost lens: with dearer flips, or after its neighbours changed,
+            // it may go.
             if !self.empty(lens, most) {
                 if most < f32::INFINITY {
                     self.push(level + 1, size, corner);
@@ -121,6 +123,8 @@ impl<'a> Sweeper<'a> {
             return None;
         }
         let lens = self.finder.find(self.front, corner, self.limit as usize)?;
+        // The heap is never cleaned: an entry that is out of date is recognised here, which costs one look instead of
+        // a search through the heap.
         if lens.len() as u32 == size {
             return Some(lens.to_vec());
         }
@@ -206,6 +210,7 @@ impl<'a> Sweeper<'a> {
         self.inside.clear(self.front.n_vertices() as usize + lens.len() + 1);
         lens.iter().for_each(|&v| self.inside.set(v, 0));
         while let Some(i) = self.flip_one(&lens, most) {
+            // The potential of the whole sweep: quads fall with every transaction that is kept, so it ends.
             if self.front.n_quads() < n_quads {
                 return true;
             }
@@ -219,6 +224,7 @@ impl<'a> Sweeper<'a> {
     /// Makes the flip of a triangle at an arc of the lens that costs least; its number in the lens.
     fn flip_one(&mut self, lens: &[u32], most: f32) -> Option<usize> {
         if !self.front.has_wants() {
+            // Without wants the first triangle that goes is as good as any.
             return (0..lens.len()).find(|&i| self.is_at_arc(lens[i]) && self.front.flip(lens[i]).is_ok());
         }
         let mut best: Option<(f32, usize)> = None;
@@ -264,6 +270,7 @@ impl<'a> Sweeper<'a> {
 
     /// Looks for lenses of twice the size.
     fn widen(&mut self) {
+        // Doubling: all looks together cost at most twice the last one.
         let most = if self.limit < self.wide { self.wide } else { self.largest };
         self.limit = (2 * self.limit).max(4).min(most);
         self.look_everywhere();

@@ -33,7 +33,7 @@ pub(crate) fn judged(surface: &QuadSurface, swept: &Swept) -> usize {
     assert_eq!(swept.front.len(), 0, "complete");
     let quads: Vec<[u32; 4]> = surface.quads_raw();
     let input = Judged::connectivity(swept.n_vertices as usize, &swept.hexes).with_surface(&quads);
-    let options = hexfill_check::Options::default().up_to(Level::L3);
+    let options = hexfill_check::Options::default().with_up_to(Level::L3);
     let report = judge(&input, &options, &Context::default());
     assert!(report.passed(Level::L3), "{:?}", report.failures);
     let mesh = hexfill_mesh::HexMesh::try_new(swept.n_vertices as usize, &swept.hexes).unwrap();

@@ -87,6 +87,7 @@ impl Void {
                     self.n_vertices - 1
                 });
             }
+            // New vertices only, so no pair that any cell has can come again: this is why a pillow is always proper.
             let [a, b, c, d] = *quad;
             self.hexes.push([a, b, c, d, outer[0], outer[1], outer[2], outer[3]]);
         }
@@ -185,6 +186,7 @@ fn pair_darts(quads: &[[u32; 4]]) -> Option<Vec<u32>> {
     open.reserve(4 * quads.len());
     for (q, quad) in quads.iter().enumerate() {
         for i in 0..4 {
+            // The same direction twice: two quads lie on one side of the edge, or an edge joins its ends twice.
             if open.insert((quad[i], quad[(i + 1) & 3]), (4 * q + i) as u32).is_some() {
                 return None;
             }

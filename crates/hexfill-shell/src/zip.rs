@@ -93,16 +93,21 @@ impl Front {
         while let Some(u) = pending.queue.pop() {
             match self.degree(u) {
                 1 => return Err(Refused::Loop),
+                // Two quads at a vertex of degree 2 share three corners: to leave them would be improper, so this is
+                // no choice but the only way on.
                 2 => self.zip(u, &mut pending)?,
                 _ => {}
             }
         }
+        // Edges may be double on the way, as long as later zips glue them; only what is left at the end counts.
         if !pending.double.is_empty() {
             return Err(Refused::DoubleEdge);
         }
         // Stable: the first entry of a hex stays first.
         pending.renamed.sort_by_key(|r| r.0);
         pending.renamed.dedup_by_key(|r| r.0);
+        // New hexes are entered as they are now, old ones exchanged for what they were. Asked last and once: most
+        // refusals above need no table.
         pending.renamed.retain(|r| !pending.hexes.contains(&r.0));
         if !self.update_pairs(&pending.renamed) || !pending.hexes.into_iter().all(|h| self.add_pairs(h)) {
             return Err(Refused::Improper);
@@ -184,6 +189,8 @@ impl Front {
         // Is p, or q, met by these two quads only?
         let (p_closed, q_closed) = (s_p == opposite(two), q_s == next(two));
         let kept = if s == t {
+            // The tops are one vertex and quads are left beyond both p and q: gluing would part the void in two, and
+            // each part would have to be filled by itself.
             if !p_closed && !q_closed {
                 return Err(Refused::Split);
             }
@@ -222,6 +229,8 @@ impl Front {
                 self.set_want(from_end, self.want(from_end) + self.want(to_end) - 4.0);
                 pending.rim.push(from_end);
             }
+            // The edge from the merged top to this end was counted as double when the tops were merged; gluing is
+            // what makes it one again.
             let edge = [kept.min(end), kept.max(end)];
             match pending.double.iter().position(|&e| e == edge) {
                 Some(i) => {
@@ -241,6 +250,7 @@ impl Front {
     /// Makes one vertex of `s` and `t` in hexes and on the front (degrees and darts are left to the caller); the one kept.
     fn merge(&mut self, s: u32, t: u32, pending: &mut Pending) -> Result<u32, Refused> {
         let (kept, gone) = match (self.is_fixed(s), self.is_fixed(t)) {
+            // The boundary is exact: two vertices of the surface are two whatever the flip gains.
             (true, true) => return Err(Refused::Fixed),
             (true, false) => (s, t),
             (false, true) => (t, s),

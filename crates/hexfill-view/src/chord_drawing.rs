@@ -46,6 +46,17 @@ pub struct ChordDrawing {
 ///
 /// # Errors
 /// [`DrawingError`] if there is no such component.
+///
+/// # Example
+/// ```
+/// use hexfill_mesh::QuadSurface;
+/// use hexfill_view::chord_drawing;
+///
+/// let quads = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
+/// let drawing = chord_drawing(&QuadSurface::try_new(8, &quads)?, "a cube")?;
+/// assert!(drawing.svg.starts_with("<svg") && drawing.left_out.is_empty());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn chord_drawing(surface: &QuadSurface, title: &str) -> Result<ChordDrawing, DrawingError> {
     let (panels, left_out) = panels(surface);
     if panels.is_empty() {

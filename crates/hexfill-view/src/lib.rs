@@ -89,6 +89,19 @@ impl ViewInput<'_> {
 }
 
 /// The page as text (UTF-8 HTML 5). See [`write_html`].
+///
+/// # Example
+/// ```
+/// use hexfill_mesh::HexMesh;
+/// use hexfill_view::{ViewInput, html};
+///
+/// let mesh = HexMesh::try_new(8, &[[0, 1, 2, 3, 4, 5, 6, 7]])?;
+/// let corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]];
+/// let points = corners.map(|p| p.map(f64::from));
+/// let input = ViewInput { title: "a cube", points: &points, mesh: &mesh, hex_values: None, shelling: None, facts: &[] };
+/// assert!(input.problems().is_empty() && html(&input).contains("<title>a cube"));
+/// # Ok::<(), hexfill_mesh::HexMeshError>(())
+/// ```
 pub fn html(input: &ViewInput<'_>) -> String {
     let mut bytes = Vec::new();
     page::write(input, &mut bytes).expect("writing to memory does not fail");

@@ -6,7 +6,8 @@ use hexfill_io::MeshData;
 use hexfill_mesh::Context;
 
 /// Judges the hexes of file data: rules L1 to L3 on connectivity (with `surface` also that it is the boundary), L4 and L5 on positions where there
-/// are any.
+/// are any. `surface` must have the first vertex ids of the mesh, as every mesh made here has. Nothing is assumed of the data and nothing is an error: what is
+/// wrong is in the report, with hexes, quads and vertices counted from 0.
 ///
 /// ```
 /// use hexfill::io::MeshData;

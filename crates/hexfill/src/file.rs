@@ -21,7 +21,8 @@ pub fn save(path: &Path, problem: &Problem, filled: &Filled, placed: Option<&Pla
 }
 
 /// The mesh as file data: the surface's points first, bit for bit, its quads in their order with their tags, then the hexes.
-/// `points` are the positions of all vertices, or `None` for connectivity alone.
+/// `points` are the positions of all vertices of `mesh`, one each, or `None` for connectivity alone; `mesh` is one of the problem's surface, whose ids come
+/// first. Nothing is checked here: writing refuses arrays that do not fit together ([`MeshData::check_for`]).
 pub fn mesh_data(problem: &Problem, mesh: &HexMesh, points: Option<Vec<[f64; 3]>>) -> MeshData {
     let mut data = problem.data();
     data.hexes = mesh.hexes_raw();

@@ -40,7 +40,7 @@ pub struct SimplifiedData {
     pub report: SimplifyReport,
 }
 
-/// How many balls to try where neither a number nor a time is given.
+/// How many balls to try where neither a number nor a time is given: ten a hex, and 20,000 at least.
 pub fn default_balls(hexes: usize) -> u64 {
     (10 * hexes as u64).max(20_000)
 }
@@ -61,7 +61,7 @@ pub fn default_balls(hexes: usize) -> u64 {
 /// ```
 ///
 /// # Errors
-/// [`SimplifyError`].
+/// [`SimplifyError::Mesh`] or [`SimplifyError::NotProper`] for hexes that are no proper mesh; [`SimplifyError::Refused`] for a defect of this program.
 pub fn simplify(
     data: &MeshData,
     options: &SimplifyOptions,
@@ -69,6 +69,7 @@ pub fn simplify(
     ctx: &Context<'_>,
 ) -> Result<SimplifiedData, SimplifyError> {
     let mesh = HexMesh::try_new(data.vertex_count(), &data.hexes)?;
+    // Proper before is what the exchange of balls keeps; of an improper mesh nothing could be promised.
     judged(&mesh, None).map_err(|rules| SimplifyError::NotProper { rules })?;
     let made = simplified(&mesh, options, atlas, ctx);
     if made.report.after == made.report.before {
@@ -163,7 +164,11 @@ fn judged(mesh: &HexMesh, boundary: Option<&[[u32; 4]]>) -> Result<(), String> {
     if let Some(quads) = boundary {
         judged = judged.with_surface(quads);
     }
-    let options = hexfill_check::Options::default().up_to(Level::L3).parts(Parts::Any).betti(false).quality(false);
+    let options = hexfill_check::Options::default()
+        .with_up_to(Level::L3)
+        .with_parts(Parts::Any)
+        .with_betti(false)
+        .with_quality(false);
     let report = judge(&judged, &options, &Context::default());
     if report.passed(Level::L3) { Ok(()) } else { Err(report.broken_rules().join(", ")) }
 }

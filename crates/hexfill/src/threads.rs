@@ -28,7 +28,7 @@ pub enum ThreadsError {
     },
 }
 
-/// Does the work on this many threads, `None`: one a core (or what `RAYON_NUM_THREADS` says). Results do not depend on it.
+/// Does the work on this many threads, 1 to [`MAX_THREADS`]; `None`: one a core (or what `RAYON_NUM_THREADS` says). Results do not depend on it.
 ///
 /// ```
 /// use hexfill::{Context, FillOptions, Problem, fill, with_threads};

@@ -76,7 +76,7 @@ fn accept(problem: &Problem, made: &PlacedFill) {
     for (filled, placed) in &made.meshes {
         let hexes = filled.mesh().hexes_raw();
         let judged = Judged::connectivity(filled.mesh().n_vertices(), &hexes).with_surface(&quads);
-        let options = hexfill::unstable::check::Options::default().up_to(Level::L3);
+        let options = hexfill::unstable::check::Options::default().with_up_to(Level::L3);
         assert!(judge(&judged, &options, &Context::default()).passed(Level::L3));
         if let (Some(placed), Some(points)) = (placed, problem.points()) {
             assert_eq!(&placed.points()[..points.len()], points);

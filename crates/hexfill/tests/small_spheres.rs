@@ -20,7 +20,7 @@ fn fill_all(strategy: Strategy) -> Vec<(usize, Route)> {
             let made = &result.meshes[0];
             let hexes = made.mesh().hexes_raw();
             let judged = Judged::connectivity(made.mesh().n_vertices(), &hexes).with_surface(&boundary);
-            let report = judge(&judged, &Options::default().up_to(Level::L3), &Context::default());
+            let report = judge(&judged, &Options::default().with_up_to(Level::L3), &Context::default());
             assert!(report.passed(Level::L3), "{report}");
             assert!(matches!(report.facts.ball, Some(Ball::Yes | Ball::Homology)), "{report}");
             found.push((hexes.len(), made.route()));

@@ -123,6 +123,8 @@ impl Frame {
             *same = cross(e2[a + 2 * c], e3[a + 2 * y]);
             *other = cross(e2[a + 2 * c], e3[1 - a + 2 * y]);
         }
+        // Eight values and twelve means of two give all 27: of 64 triple products 32 are computed. The error bound
+        // above counts on this order of sums.
         let (mut corner_sum, mut edge_sum) = (0.0, 0.0);
         for (i, &cross) in same.iter().enumerate() {
             let (a, y, c) = (i & 1, i >> 1 & 1, i >> 2);

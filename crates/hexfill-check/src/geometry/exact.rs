@@ -21,6 +21,7 @@ fn parts(x: f64) -> (i64, i32) {
 
 /// The eight points times one power of two, as integers. All coordinates are finite.
 fn integers(p: &[Vector; 8]) -> [[IBig; 3]; 8] {
+    // One power of two for all: it scales det J by its cube and leaves every sign, so nothing has to be divided.
     let low = p.iter().flatten().map(|&x| parts(x)).filter(|x| x.0 != 0).map(|x| x.1).min().unwrap_or(0);
     p.map(|v| {
         v.map(|x| {
@@ -65,6 +66,8 @@ fn coefficients(e: &[[Big; 4]; 3], corners: &[IBig; 8]) -> Vec<IBig> {
     for s in 0..2 {
         for t in 0..2 {
             let four = IBig::from(4);
+            // In eighths edge coefficients are multiples of 4 and corner ones of 8, so that the divisions by 4 below
+            // leave no rest.
             b[at(1, 2 * s, 2 * t)] = (mixed(s, t, 0, t, 1, s) + mixed(s, t, 1, t, 0, s)) * &four;
             b[at(2 * s, 1, 2 * t)] = (mixed(0, t, s, t, s, 1) + mixed(1, t, s, t, s, 0)) * &four;
             b[at(2 * s, 2 * t, 1)] = (mixed(t, 0, s, 1, s, t) + mixed(t, 1, s, 0, s, t)) * &four;
@@ -104,6 +107,8 @@ fn halve(b: &[IBig], axis: usize) -> [Vec<IBig>; 2] {
     let (mut low, mut high) = (b.to_vec(), b.to_vec());
     for i in (0..27).filter(|i| i / stride % 3 == 0) {
         let (p, q, r) = (&b[i], &b[i + stride], &b[i + 2 * stride]);
+        // Times four: each halving would bring quarters. All coefficients of a box share the factor, so their signs
+        // and their order stay.
         let (pq, qr) = (p + q, q + r);
         let mid = &pq + &qr;
         low[i] = p << 2usize;
@@ -118,8 +123,11 @@ fn halve(b: &[IBig], axis: usize) -> [Vec<IBig>; 2] {
 
 /// Decides det J > 0 on the whole hex. All coordinates are finite.
 pub(crate) fn positivity(p: &[Vector; 8]) -> Positivity {
+    // Differences of integers are exact here. In floating point they are rounded once, which is why a filter's "no"
+    // proves nothing of the stored numbers.
     let e = frame(&integers(p));
     let corners = corner_values(&e);
+    // All eight negative is as a rule a hex listed in mirrored order; that deserves a name of its own.
     if corners.iter().all(|c| *c < IBig::ZERO) {
         return Positivity::InsideOut;
     }
@@ -136,6 +144,8 @@ pub(crate) fn positivity(p: &[Vector; 8]) -> Positivity {
         if b.iter().all(|c| *c > IBig::ZERO) {
             continue;
         }
+        // A hex that is positive but for a point on its inside, or nearly so, can be halved for ever. Undecided is
+        // then the honest word; the rule has a name of its own.
         if cell.depth >= MAX_DEPTH || visited >= MAX_BOXES {
             return Positivity::Undecided;
         }

@@ -21,6 +21,7 @@ pub(crate) fn surely_positive(p: &[Vector; 8]) -> bool {
 /// Decides det J > 0 on the whole hex. All coordinates are finite.
 pub(crate) fn decide(p: &[Vector; 8]) -> Positivity {
     let frame = Frame::new(p);
+    // The error bound assumes that nothing underflows or overflows.
     let Some(size) = frame.safe_size() else { return exact::positivity(p) };
     let b = frame.coefficients();
     let most = b.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
@@ -28,11 +29,14 @@ pub(crate) fn decide(p: &[Vector; 8]) -> Positivity {
     let mut visited = 0;
     while let Some((b, error, cell)) = boxes.pop() {
         visited += 1;
+        // The graph of a polynomial lies in the convex hull of its Bernstein coefficients (Johnen, Weill, Remacle
+        // 2017): all of them positive settles the box.
         if b.iter().all(|&x| x > error) {
             continue;
         }
         let bad = (0..8).find(|&i| b[CORNERS[i]] < -error);
         if let Some(i) = bad {
+            // Only at depth 0 are the box's corners those of the hex.
             if cell.depth == 0 && CORNERS.iter().all(|&c| b[c] < -error) {
                 return Positivity::InsideOut;
             }

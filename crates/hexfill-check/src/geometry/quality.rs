@@ -304,6 +304,19 @@ const WORST_WIDTH: f64 = 1e-9;
 /// The numbers of every hex, in order, on the current rayon pool. `None` where a hex has an index out of range or a position
 /// that is not finite, or no positions were given. Certified intervals of the scaled Jacobian are at most 0.001 long, those of
 /// hexes that may be the worst 1e-9, unless that takes more than 2,000 boxes.
+///
+/// # Example
+/// ```
+/// use hexfill_check::{Judged, cell_quality};
+///
+/// let hexes = [[0, 1, 2, 3, 4, 5, 6, 7]];
+/// let corners = [[0, 0, 0], [2, 0, 0], [2, 1, 0], [0, 1, 0], [0, 0, 1], [2, 0, 1], [2, 1, 1], [0, 1, 1]];
+/// let points = corners.map(|p| p.map(f64::from));
+/// let cells = cell_quality(&Judged::connectivity(8, &hexes).with_points(&points));
+/// let brick = cells[0].expect("indices in range, positions finite");
+/// assert!(brick.valid && brick.certified_lower > 0.999);
+/// assert_eq!((brick.volume, brick.edge_ratio), (2.0, 2.0));
+/// ```
 pub fn cell_quality(input: &Judged<'_>) -> Vec<Option<CellQuality>> {
     let points = input.points.unwrap_or_default();
     let effort = |width: f64| Effort { enough: f64::INFINITY, width, boxes: 2_000 };

@@ -108,6 +108,7 @@ fn part(frame: Frame, lengths: &Lengths, b: [f64; 27], error: f64, cell: Cell, s
         let value = b[c] + error;
         let away = if value > 0.0 { -slack } else { slack };
         let product = norms.iter().fold(1.0, |p, n| p * (n + away));
+        // Beside an edge as short as its own rounding nothing is known of the corner; it bounds nothing.
         if norms.iter().all(|&n| n > 2.0 * slack) {
             let ratio = value / product;
             *upper = upper.min((ratio + ratio.abs() * 32.0 * UNIT).clamp(-1.0, 1.0));
@@ -149,11 +150,14 @@ impl Whole {
     fn refine(self, effort: Effort) -> Interval {
         let Self { mut upper, slack, part: whole } = self;
         let most = whole.b.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        // The bound of `halve`: means do not increase errors, so a box d halvings deep is off by d of these and what
+        // there was.
         let step = 4.0 * UNIT * most * 1.01;
         let mut parts = vec![whole];
         let mut heap = BinaryHeap::from([Entry { lower: parts[0].lower, part: 0 }]);
         let mut visited = 1;
         while let Some(&Entry { lower, part: worst }) = heap.peek() {
+            // The heap's top has the least bound of all boxes, so it is that of the whole hex.
             let done = lower >= effort.enough || upper - lower <= effort.width || upper <= 0.0;
             if done || visited >= effort.boxes || parts[worst].cell.depth >= 100 {
                 return Interval { lower: lower.min(upper), upper };

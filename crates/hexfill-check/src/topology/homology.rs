@@ -101,6 +101,8 @@ fn spine(hexes: &[[u32; 8]], stars: &Stars, edges: &Edges, ctx: &Context<'_>) ->
             .flatten()
             .filter(|quad| {
                 let [one, two] = quad.hexes;
+                // A quad of the forest is the free face through which one of its hexes is collapsed; the other quads
+                // stay.
                 !dual.join(one.unwrap_or(outside), two.unwrap_or(outside))
             })
             .map(|quad| quad.cycle)
@@ -166,6 +168,7 @@ impl Collapse {
             if ctx.stop().is_some() {
                 return None;
             }
+            // Which quad is taken is free: the Betti numbers do not depend on it, only the size of the matrix does.
             self.state[cursor] = CRITICAL;
             self.critical.push(cursor as u32);
             self.take_out(cursor as u32, quads, &mut free);
@@ -188,6 +191,7 @@ impl Collapse {
             return Some(0);
         }
         let words = critical_edges.len().div_ceil(64);
+        // Known before the work: "not computed" is an answer, hours are none.
         if words as u64 * (4 * self.order.len() + self.gone.len()) as u64 > MATRIX_WORK
             || words * self.critical.len() * self.critical.len() > MATRIX_WORK as usize
         {
@@ -207,6 +211,7 @@ impl Collapse {
             for &q in self.order.iter().rev() {
                 let quad = &quads[q as usize];
                 let e = quad[self.state[q as usize] as usize] as usize;
+                // Its own entry is on the right side as well: zero first, or it would be added to itself.
                 image[e] = 0;
                 image[e] = quad.iter().fold(0, |sum, &f| sum ^ image[f as usize]);
             }

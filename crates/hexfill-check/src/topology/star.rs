@@ -215,6 +215,8 @@ impl<'a> StarJudge<'a> {
             let place = (i as u64) << 3;
             self.entries.extend(near.iter().zip(0u64..).map(|(&w, slot)| u64::from(w) << 32 | place | slot));
         }
+        // One sort answers everything: entries of one pair are neighbours now, with their kinds, and quads round v
+        // are known by their opposite corner.
         self.entries.sort_unstable();
         self.triangles.clear();
         self.triangles.extend(0..codes.len() as u32);
@@ -235,6 +237,7 @@ impl<'a> StarJudge<'a> {
                 self.boundary_quad(v, w, kinds.face[0], codes, link);
                 1
             }
+            // By far the most common pairs; only what does not fit is collected and sorted.
             2 if self.others(kinds.face[0]) == self.others(kinds.face[1]) => {
                 self.interior_quad(v, w, kinds.face[0], kinds.face[1], codes, link);
                 1
@@ -333,6 +336,7 @@ impl<'a> StarJudge<'a> {
         link.edges += 1;
         link.boundary_edges += 1;
         let [x, y] = self.sides(entry);
+        // Seen from all four corners, counted and named from the smallest: no set of quads is ever needed.
         if v < w && v < x && v < y {
             self.sums.quads += 1;
             // The right-handed order x, y turns inward; outward is the other way round.
@@ -348,6 +352,8 @@ impl<'a> StarJudge<'a> {
         let (i, j) = (place(one) as u32, place(two) as u32);
         let (k, l) = ((one & 7) as u32 - 3, (two & 7) as u32 - 3);
         link.triangle_pieces -= join(&mut self.triangles, i, j);
+        // The quad is an edge of the link between two triangles: its ends are the corners of both at the same
+        // neighbours of v. What is left apart at one neighbour in the end is a fan of its own.
         let (c1, c2) = (3 * i + (k + 1) % 3, 3 * i + (k + 2) % 3);
         let (mut d1, mut d2) = (3 * j + (l + 2) % 3, 3 * j + (l + 1) % 3);
         if clash {
@@ -430,6 +436,8 @@ impl<'a> StarJudge<'a> {
             let note = format!("{pieces} pieces");
             self.sums.findings.add(Rule::VertexPinched, || Offender::at(&hexes, &[v]).note(note));
         } else if link.corner_classes == link.vertices {
+            // Connected, and every edge in one fan: a surface with or without boundary, which its Euler
+            // characteristic names.
             let euler = i64::from(link.vertices) - i64::from(link.edges) + i64::from(d);
             let (rule, wanted) =
                 if link.boundary_edges == 0 { (Rule::VertexLinkNotSphere, 2) } else { (Rule::VertexLinkNotDisk, 1) };

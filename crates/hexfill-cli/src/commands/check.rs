@@ -90,11 +90,11 @@ impl CheckArgs {
             RulesArg::Weill => Rules::Weill,
         };
         Options::default()
-            .rules(rules)
-            .up_to(self.up_to.level())
-            .betti(!self.no_betti)
-            .quality(!self.no_quality)
-            .overlap(self.overlap)
+            .with_rules(rules)
+            .with_up_to(self.up_to.level())
+            .with_betti(!self.no_betti)
+            .with_quality(!self.no_quality)
+            .with_overlap(self.overlap)
     }
 }
 

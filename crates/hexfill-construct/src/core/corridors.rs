@@ -46,6 +46,7 @@ pub(crate) fn corridors(
         }
         let mut odd: BTreeSet<usize> = components.into_iter().filter(|&c| !size[c].is_multiple_of(2)).collect();
         while let Some(a) = odd.pop_first() {
+            // Corridors do not share tets: their balls are filled one by one and must not overlap.
             let Some(tets) = ways.shortest(a, &odd) else {
                 let b = odd.first().copied().unwrap_or(a);
                 return Err(ConstructError::OddJoin {
@@ -84,6 +85,7 @@ impl<'a> Ways<'a> {
             }
         }
         let mut quad = IdVec::filled(QuadId::NONE, n_tets);
+        // Backwards, so that the lowest triangle of a tet is the one that stays.
         for (triangle, &f) in boundary.iter().enumerate().rev() {
             quad[tets_of[f][0]] = QuadId::new(triangle / 2);
         }

@@ -65,6 +65,8 @@ pub(crate) fn core(plan: &Plan<'_>, ctx: &Context<'_>) -> Result<Inside, Constru
         Some(maker) => (maker.core(), maker.fill(&request, ctx)?, space.inner_copy(plan)),
         None => built_in(plan, &space, &request, ctx)?,
     };
+    // Whoever made the tets, they are not believed: everything after relies on their boundary being the triangles
+    // asked for.
     let boundary = complex.match_boundary(&request)?;
     let corridors = corridors(plan.surface, &complex, &boundary)?;
     Ok(Inside { core, complex, boundary, inner, is_star: space.centre.is_some(), corridors })
@@ -138,6 +140,7 @@ fn delaunay(
     for points in [inner.as_deref(), request.points] {
         match DelaunayTets::default().fill(&TetRequest { points, ..*request }, ctx) {
             Err(ConstructError::Stopped(reason)) => return Err(ConstructError::Stopped(reason)),
+            // A refusal is no answer about the surface: a cone or a handlebody may do without positions.
             Err(_) => {}
             Ok(complex) => return Ok(Some(complex)),
         }

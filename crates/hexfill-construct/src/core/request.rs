@@ -1,6 +1,7 @@
 //! What the tetrahedra have to fill.
 
 use crate::error::ConstructError;
+use crate::missing::MissingInterior;
 use hexfill_mesh::{Forest, VertexId};
 
 /// What the tetrahedra have to fill: the triangulated inner copy of the surface.
@@ -48,8 +49,8 @@ impl TetRequest<'_> {
     }
 
     /// The error of a maker that cannot fill this request.
-    pub fn interior_needed(&self, reason: impl Into<String>) -> ConstructError {
+    pub fn interior_needed(&self, reason: MissingInterior) -> ConstructError {
         let (genus, components) = self.shape();
-        ConstructError::InteriorNeeded { genus, components, reason: reason.into() }
+        ConstructError::InteriorNeeded { genus, components, reason }
     }
 }

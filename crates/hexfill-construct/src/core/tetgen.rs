@@ -13,6 +13,7 @@ use super::request::TetRequest;
 use super::used::Used;
 use crate::error::ConstructError;
 use crate::ids::TetId;
+use crate::missing::MissingInterior;
 use hexfill_geometry::tet_volume;
 use hexfill_mesh::{Context, IdVec, StopReason, VertexId};
 use std::fmt::Write as _;
@@ -40,26 +41,31 @@ const SWITCHES: [&str; 2] = ["-pYQ", "-pYMQ"];
 
 /// Why there is no answer.
 enum Failure {
-    Reason(String),
+    Reason(MissingInterior),
     Boundary(String),
     Stopped(StopReason),
 }
 
-impl From<String> for Failure {
-    fn from(reason: String) -> Self {
+impl From<MissingInterior> for Failure {
+    fn from(reason: MissingInterior) -> Self {
         Self::Reason(reason)
     }
+}
+
+/// A file or program that the system does not give.
+fn unreachable_at(at: impl std::fmt::Display, error: std::io::Error) -> MissingInterior {
+    MissingInterior::TetgenIo { at: at.to_string(), error: error.to_string() }
 }
 
 /// A folder of our own, removed in the end.
 struct Folder(PathBuf);
 
 impl Folder {
-    fn new() -> Result<Self, String> {
+    fn new() -> Result<Self, MissingInterior> {
         static COUNT: AtomicU64 = AtomicU64::new(0);
         let name = format!("hexfill-tetgen-{}-{}", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed));
         let path = std::env::temp_dir().join(name);
-        std::fs::create_dir_all(&path).map_err(|e| format!("{}: {e}", path.display()))?;
+        std::fs::create_dir_all(&path).map_err(|e| unreachable_at(path.display(), e))?;
         Ok(Self(path))
     }
 }
@@ -77,7 +83,9 @@ impl InteriorTets for TetgenTets {
     }
 
     fn fill(&self, request: &TetRequest<'_>, ctx: &Context<'_>) -> Result<TetComplex, ConstructError> {
-        let Some(points) = request.points else { return Err(request.interior_needed("tetgen needs positions")) };
+        let Some(points) = request.points else {
+            return Err(request.interior_needed(MissingInterior::NoPositionsForTetgen));
+        };
         self.run(request, points, ctx).map_err(|failure| match failure {
             Failure::Reason(reason) => request.interior_needed(reason),
             Failure::Boundary(reason) => ConstructError::TetBoundary { reason },
@@ -97,7 +105,7 @@ impl TetgenTets {
                 done => return done,
             }
         }
-        Err(first.unwrap_or_else(|| Failure::Reason("tetgen was not asked".into())))
+        Err(first.expect("switches are tried"))
     }
 
     /// One attempt.
@@ -112,10 +120,10 @@ impl TetgenTets {
         let folder = Folder::new()?;
         let poly = folder.0.join("core.poly");
         let text = poly_text(&own.points(points), &own.triangles);
-        std::fs::write(&poly, text).map_err(|e| format!("{}: {e}", poly.display()))?;
+        std::fs::write(&poly, text).map_err(|e| unreachable_at(poly.display(), e))?;
         self.call(switches, &folder.0, ctx)?;
         let (found, tets) = read_answer(&folder.0)
-            .map_err(|e| format!("{} ended without an error, but {e}: is it tetgen?", self.program.display()))?;
+            .map_err(|what| MissingInterior::TetgenAnswer { program: self.program.display().to_string(), what })?;
         let n_own = own.vertices.len();
         if found.len() < n_own {
             return Err(Failure::Boundary(format!("tetgen returned {} vertices of {n_own}", found.len())));
@@ -129,8 +137,8 @@ impl TetgenTets {
 
     /// Runs the program in `folder` until it ends or the context says stop.
     fn call(&self, switches: &str, folder: &Path, ctx: &Context<'_>) -> Result<(), Failure> {
-        let name = self.program.display();
-        let file = |name: &str| File::create(folder.join(name)).map_err(|e| format!("{}: {e}", folder.display()));
+        let program = self.program.display().to_string();
+        let file = |name: &str| File::create(folder.join(name)).map_err(|e| unreachable_at(folder.display(), e));
         // Output goes to files: a pipe nobody empties would hang a talkative program.
         let mut child = Command::new(&self.program)
             .args([switches, "core.poly"])
@@ -139,13 +147,13 @@ impl TetgenTets {
             .stdout(file("stdout")?)
             .stderr(file("stderr")?)
             .spawn()
-            .map_err(|e| format!("{name}: {e}; install tetgen or give tetrahedra"))?;
+            .map_err(|e| MissingInterior::TetgenNotStarted { program: program.clone(), error: e.to_string() })?;
         let mut pause = Duration::from_millis(1);
         let status = loop {
             match child.try_wait() {
                 Ok(Some(status)) => break status,
                 Ok(None) => {}
-                Err(e) => return Err(format!("{name}: {e}").into()),
+                Err(e) => return Err(unreachable_at(program, e).into()),
             }
             if let Some(reason) = ctx.stop() {
                 // It may have ended by itself in between.
@@ -163,8 +171,8 @@ impl TetgenTets {
         let words: Vec<String> = words.iter().map(|w| String::from_utf8_lossy(w).trim().to_owned()).collect();
         let words = words.join(" ");
         let last: String = words.chars().rev().take(600).collect::<Vec<_>>().into_iter().rev().collect();
-        let meets = "; tetgen ends like this where the surface meets itself or nearly does";
-        Err(format!("{name} failed ({status}){meets}: {}", last.trim()).into())
+        let said = last.trim().to_owned();
+        Err(MissingInterior::TetgenFailed { program, status: status.to_string(), said }.into())
     }
 }
 

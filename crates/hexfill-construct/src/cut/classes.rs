@@ -41,6 +41,8 @@ pub(super) fn edge_classes(complex: &TetComplex, ends: &IdVec<EdgeId, [VertexId;
         if spread.run(ends, complex.n_vertices).is_some() {
             return spread.classes;
         }
+        // Symbols are as many as H^1 has generators, a word or two; a form of fixed width is one slice, so it is made
+        // anew rather than let grow.
         width *= 2;
     }
 }
@@ -113,6 +115,7 @@ impl Spread<'_> {
         let width = self.classes.width;
         for &f in &self.faces_of[e] {
             let edges = self.triangles[f];
+            // An edge is looked round once, so a face is met three times in all and every pass is linear.
             self.unknown[f] -= 1;
             match self.unknown[f] {
                 1 => {

@@ -78,6 +78,7 @@ fn sigma(
     surface_edge: &IdVec<Dart, EdgeId>,
 ) -> Result<Sigma, ConstructError> {
     if colouring.n_cut_edges == 0 {
+        // The zero cocycle agrees with a bipartite surface, and it splits every tet in 4, the fewest there are.
         return Ok(IdVec::filled(false, complex.n_edges));
     }
     let ends = complex.edge_ends();
@@ -90,6 +91,8 @@ fn sigma(
         f
     };
     let tree = potentials(surface, classes.width, &form);
+    // A clash is no failure of the method: the edges whose equations add up to 1 = 0 form a cycle of odd length that
+    // bounds inside, and no hex mesh exists (Erickson 2014, section 4).
     let solution = match agreement(surface, &classes, &tree, &form) {
         Ok(system) => system.solve(classes.width),
         Err(sources) => return Err(odd_cycle(surface, &tree.parent, &sources)),
@@ -158,6 +161,8 @@ fn agreement(
     let mut seen: BTreeSet<Form> = BTreeSet::new();
     for d in surface.darts().filter(|&d| d < surface.twin(d)) {
         let equation = sum(&sum(at(surface.origin(d)), at(surface.target(d))), &form(d));
+        // A surface has many edges and few different equations; those seen before would be reduced to nothing, at the
+        // cost of an elimination each.
         if equation.iter().any(|&w| w != 0) && seen.insert(equation.clone()) {
             system.add(equation, Some(d))?;
         }
@@ -181,6 +186,9 @@ fn fewer_cuts(
     for _ in 0..20 {
         let mut moved = false;
         for v in flipped.ids().skip(surface.n_vertices()) {
+            // To flip a vertex is to add a coboundary: the class stays, so Sigma remains a solution. Every flip taken
+            // saves hexes, so this ends; a least cut of the whole graph would save more and take more than linear
+            // time.
             let balance: i64 = star[v].iter().map(|&e| if cut[e] { weight[e] } else { -weight[e] }).sum();
             if balance > 0 {
                 flipped[v] = !flipped[v];
@@ -205,6 +213,7 @@ fn odd_cycle(surface: &QuadSurface, parent: &[Option<Dart>], sources: &BTreeSet<
             cycle.insert(edge);
         }
     };
+    // Over Z/2: what two fundamental cycles share drops out, and an even number of edges is left at every vertex.
     for &d in sources {
         toggle(d);
         for mut v in [surface.origin(d), surface.target(d)] {

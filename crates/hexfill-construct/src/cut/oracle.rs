@@ -78,7 +78,7 @@ impl Solid {
         let request = TetRequest { n_vertices: surface.n_vertices(), triangles: &triangles, points: Some(points) };
         match HandlebodyTets.fill(&request, &Context::default()) {
             Ok(complex) => Some(Self { surface: surface.clone(), colours, triangles, complex }),
-            Err(ConstructError::InteriorNeeded { reason, .. }) if reason.contains("meets itself") => None,
+            Err(ConstructError::InteriorNeeded { reason, .. }) if reason.to_string().contains("meets itself") => None,
             Err(other) => panic!("{other}"),
         }
     }

@@ -30,6 +30,7 @@ impl System {
                 sources = sources.symmetric_difference(from).copied().collect();
             }
         }
+        // Bit 0 is the constant, no symbol: a row in which it alone is left says 1 = 0.
         let pivot = (1..64 * form.len()).find(|&k| form[k / 64] >> (k % 64) & 1 == 1);
         match pivot {
             Some(pivot) => {

@@ -42,6 +42,7 @@ pub(crate) fn hexes(
     stage("cells", ctx)?;
     let (cells, n_inner) = count_cells(layer, plan.library)?;
     let report = Report::new(plan, inside, layer, cells, n_split(&inside.complex, cut));
+    // Known before the first hex is made, because cells and splits are counted from the patterns and Sigma.
     if report.n_hexes() > HexMesh::MAX_HEXES {
         return Err(ConstructError::TooLarge { what: "hexes", given: report.n_hexes(), limit: HexMesh::MAX_HEXES });
     }

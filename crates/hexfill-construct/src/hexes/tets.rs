@@ -32,6 +32,8 @@ pub(crate) struct CorePoints {
 fn sides(cut: &Sigma, edges: &[EdgeId; 6]) -> Option<[bool; 4]> {
     let s = |k: usize| cut[edges[k]];
     let side = [false, s(0), s(1), s(2)];
+    // Three edges tell the sides. The other three agree with them iff every triangle has 0 or 2 cut edges (Sigma is a
+    // cocycle), and then 0, 3 or 4 edges are cut: no other case exists.
     let fits = TET_EDGES.iter().enumerate().all(|(k, &[i, j])| s(k) == (side[i] != side[j]));
     fits.then_some(side)
 }
@@ -109,10 +111,14 @@ impl CorePoints {
                 };
                 let mut set = |i: usize, j: usize, at_i: PointId, at_j: PointId, is_cut: bool| {
                     let e = complex.tet_edges[t][tet_edge(i, j)];
+                    // By vertex id, not by the place in this tet: every tet round the edge reads the pair in the same
+                    // order.
                     self.edge[e] = if tet[i] < tet[j] { [at_i, at_j] } else { [at_j, at_i] };
                     cut[e] == is_cut
                 };
                 let d = layer.diagonal_point(q);
+                // The cells above were filled for a diagonal that is not cut; a Sigma that crossed it would split
+                // these triangles in another pattern.
                 let mut agree = set(a, b, d, d, false);
                 for (i, j, side) in [(a, o, 2 * half), (o, b, 2 * half + 1)] {
                     let dart = layer.dart(q, side);
@@ -140,6 +146,8 @@ impl CorePoints {
             }
         }
         for (t, edges) in complex.tet_edges.enumerate() {
+            // What makes the whole fit: a face's pattern is read off Sigma on its own edges, so the two tets at it
+            // agree once each of them has sides at all.
             let Some(side) = sides(cut, edges) else {
                 return misfit(format!("Sigma is no surface in tetrahedron {}", t.0));
             };
@@ -169,10 +177,14 @@ pub(super) fn split_tets(complex: &TetComplex, cut: &Sigma, points: &CorePoints,
         // The point of the face opposite m on the side of i.
         let f = |m: usize, i: usize| {
             let id = complex.tet_faces[t][m];
+            // The lone vertex of a cut face has nobody on its side. On an uncut face all are alike, and both entries
+            // are one point.
             let alike = others(m).into_iter().filter(|&k| side[k] == side[i]).count();
             points.face[id][usize::from(alike != 1)]
         };
         let z = |i: usize| points.tet[t][usize::from(side[i])];
+        // The four corner hexes are those of a tet that is not cut, drawn apart along Sigma; a sheet hex fills the
+        // gap at every cut edge. Hence 4, 7 or 8.
         for (i, &[j, k, l]) in OUTWARD.iter().enumerate() {
             hexes.push([v(i), e(i, j), f(l, i), e(i, k), e(i, l), f(k, i), z(i), f(j, i)]);
         }

@@ -14,6 +14,8 @@ pub(super) fn chain(
     hexes_at: &BTreeMap<[PointId; 4], Vec<usize>>,
     near: &BTreeSet<PointId>,
 ) -> Option<Vec<usize>> {
+    // A hex in the middle that touches the cubes would make the ball touch itself; that is made dear rather than
+    // forbidden, since close components leave no way without.
     let cost = |h: usize| {
         if h == first || h == last { 1 } else { 1 + 4 * hexes[h].iter().filter(|v| near.contains(v)).count() }
     };
@@ -60,6 +62,8 @@ pub(super) fn ball(
     let mut open: BTreeMap<[PointId; 4], [PointId; 4]> = BTreeMap::new();
     let chained = chain.iter().flat_map(|&h| FACETS.map(|f| f.map(|k| hexes[h][k])));
     for quad in cubes.iter().flatten().copied().chain(chained) {
+        // A quad that comes twice lies between two members of the chain: the boundary is what came an odd number of
+        // times.
         if open.remove(&sorted(quad)).is_none() {
             open.insert(sorted(quad), quad);
         }
@@ -69,6 +73,7 @@ pub(super) fn ball(
     ids.dedup();
     let local: Vec<[u32; 4]> = open.values().map(|q| q.map(|v| ids.partition_point(|&x| x < v) as u32)).collect();
     let surface = QuadSurface::try_new(ids.len(), &local).map_err(|e| e.to_string())?;
+    // Nothing above made sure of this: it decides whether the chain may be replaced.
     if !surface.is_sphere() || !surface.n_quads().is_multiple_of(2) || !surface.reversed().is_empty() {
         return Err("the chains found touch themselves".into());
     }

@@ -61,6 +61,7 @@ pub(crate) fn ball_of(
         quads.map(|quad| quad.map(|r| layer.point(q, r))).collect::<Vec<_>>()
     });
     let near: BTreeSet<PointId> = cubes.iter().flatten().flatten().copied().collect();
+    // Ordered maps: which of several chains is taken must not hang on a hash.
     let mut hexes_at: BTreeMap<[PointId; 4], Vec<usize>> = BTreeMap::new();
     for h in corridor.tets.iter().flat_map(|&t| made.hexes_of(t)) {
         for f in FACETS {
@@ -71,6 +72,8 @@ pub(crate) fn ball_of(
     let goals: BTreeSet<usize> = cubes[1].iter().filter_map(at).collect();
     let starts: BTreeSet<usize> = cubes[0].iter().filter_map(at).collect();
     let mut reason = "no hexes of the core lie between them".to_owned();
+    // A chain that touches itself or the cubes away from its ends is no ball; another pair of ends gives another
+    // chain.
     for (&first, &last) in starts.iter().flat_map(|s| goals.iter().map(move |g| (s, g))) {
         if let Some(stop) = ctx.stop() {
             return Err(ConstructError::Stopped(stop));
@@ -112,6 +115,8 @@ pub(crate) fn replace(
         if n_points > u32::MAX as usize {
             return Err(ConstructError::TooLarge { what: "vertices", given: n_points, limit: u32::MAX as usize });
         }
+        // The filling keeps the ids of its surface, which come first (the invariant of all fillings), so gluing is
+        // renumbering.
         let place = |v: usize| if v < n_old { ball.points_of[v] } else { PointId::new(first + v - n_old) };
         added.extend(filling.mesh.hexes().iter().map(|h| h.map(|v| place(v.index()))));
         if let Some(start) = &mut start {

@@ -64,6 +64,8 @@ impl<'a> Layer<'a> {
             return Err(ConstructError::TooLarge { what: "vertices", given: bound, limit: u32::MAX as usize });
         }
         let mut next = PointId::new(n_vertices);
+        // Ranks, not hashes: what a point is called follows from its vertex, edge or quad alone, so the cells on both
+        // sides of an edge name it alike without knowing of each other.
         let mut take = |n: u32| {
             let first = next;
             next = next.plus(n);
@@ -86,6 +88,8 @@ impl<'a> Layer<'a> {
         let turn: IdVec<QuadId, u8> = (0..n_quads).map(|q| turn_of(surface, white, QuadId::new(q))).collect();
         let points_of = |(q, &turn): (QuadId, &u8)| {
             let corners = surface.quad(q);
+            // Diagonals join black corners and Sigma never crosses them. So a triangle has no cut edge (its odd
+            // corner is white: one point) or two (black: a point on either side).
             let odd = [1, 3].map(|k| corners[(k + usize::from(turn)) % 4]);
             take(1 + odd.iter().map(|&v| if white[v] { 1 } else { 2 }).sum::<u32>())
         };
@@ -94,6 +98,7 @@ impl<'a> Layer<'a> {
         let star_at_origin = surface.darts().map(|d| surface.origin(d) < surface.target(d)).collect();
         let mut layer = Self { surface, white, inner, middle, edge, sides, star_at_origin, facet, turn, end: next };
         layer.choose_stars(plan.library);
+        // Asked before anything is made: the built-in libraries have every pattern, one of the caller's may not.
         let mut patterns = (0..n_quads).map(QuadId::new).filter(|&q| !layer.is_open(q)).map(|q| layer.pattern(q));
         match patterns.find(|pattern| plan.library.find(pattern).is_none()) {
             Some(pattern) => Err(ConstructError::NoCell { pattern }),
@@ -108,6 +113,8 @@ impl<'a> Layer<'a> {
         let cost = |layer: &Self, d: Dart| -> usize {
             [d, surface.twin(d)].map(|d| library.cost(&layer.pattern(d.quad()))).iter().sum()
         };
+        // Only the two cells at an edge change with its star, so the sum over all cells falls with every exchange
+        // that is kept.
         for _ in 0..2 {
             for d in surface.darts() {
                 let twin = surface.twin(d);

@@ -60,6 +60,8 @@ pub fn light_sides(
         light[d] = true;
     }
     let n_unmatched = mate.iter().filter(|d| d.is_none()).count();
+    // A quad the matching left over has no light side, an open one may have one: these are the places where the
+    // parity is wrong, an even number in each component.
     let mut odd: IdVec<QuadId, bool> = mate.iter().zip(&open).map(|(&d, &open)| d.is_none() != open).collect();
     if odd.as_slice().contains(&true) {
         tree_join(surface, &mut odd, &mut light);
@@ -137,6 +139,8 @@ fn augment(surface: &QuadSurface, mate: &mut IdVec<QuadId, Dart>, ctx: &Context<
         stamp[root] = root;
         let mut at = 0;
         let mut end = None;
+        // No blossoms are shrunk: a general maximum matching took a minute for 100,000 quads, and what this search
+        // misses costs a few cells with three light sides.
         'search: while at < queue.len() && queue.len() < SEARCH_LIMIT {
             let q = queue[at];
             at += 1;
@@ -189,6 +193,8 @@ fn tree_join(surface: &QuadSurface, odd: &mut IdVec<QuadId, bool>, light: &mut I
             }
         }
     }
+    // From the leaves: when a quad is reached everything below it is settled, and an edge of the tree is toggled iff
+    // an odd number of odd quads hangs on it. The root comes out even because each component has an even number.
     for &(q, up) in order.iter().rev() {
         if odd[q] && up.is_some() {
             let across = surface.twin(up);

@@ -36,6 +36,7 @@ pub(crate) fn plan<'a>(
     options: &'a ConstructOptions,
     ctx: &Context<'_>,
 ) -> Result<Plan<'a>, ConstructError> {
+    // The theorems that need no inside come first: a refusal costs linear time and names its reason.
     if let Some(no) = forbidden(surface) {
         return Err(ConstructError::NoMesh(no));
     }

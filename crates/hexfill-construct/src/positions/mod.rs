@@ -22,6 +22,8 @@ pub(crate) fn positions(
     core: &CorePoints,
 ) -> Option<IdVec<PointId, Vector>> {
     let mut inner = inside.inner.take()?;
+    // Tets may have been made between other places than the inner copies are at; the copies give way until those tets
+    // are right side out.
     inner.fit_to_tets(plan.surface, &inside.complex);
     let mut out = IdVec::filled([0.0; 3], core.end.index());
     out.as_mut_slice()[..inner.outer.len()].copy_from_slice(&inner.outer);
@@ -66,6 +68,8 @@ impl CoreStart<'_> {
             if low == high {
                 out[low] = mean(&[i, j], &[1.0, 1.0]);
             } else {
+                // Thirds: the two copies of a point lie apart by as much as either from its end, and sheet hexes get
+                // volume.
                 out[low] = mean(&[i, j], &[2.0, 1.0]);
                 out[high] = mean(&[i, j], &[1.0, 2.0]);
             }
@@ -112,6 +116,8 @@ fn place_layer(library: &CellLibrary, layer: &Layer<'_>, inner: &InnerCopy, out:
     let n_surface = inner.outer.len();
     let mut next = layer.end();
     for q in (0..layer.n_quads()).map(QuadId::new) {
+        // Templates have congruent sides, so both cells at an edge put the points of their common side to the same
+        // place but for rounding, whichever comes last.
         let Some(cell) = library.find(&layer.pattern(q)) else { continue };
         let corners = [0, 1, 2, 3].map(|k| layer.corner(q, k));
         let (low, high) = (corners.map(|v| inner.outer[v.index()]), corners.map(|v| inner.at(v)));
@@ -120,6 +126,7 @@ fn place_layer(library: &CellLibrary, layer: &Layer<'_>, inner: &InnerCopy, out:
             match cell.boundary.get(i) {
                 Some(&role) => {
                     let point = layer.point(q, role);
+                    // The image of a corner may be off by a rounding; the surface keeps its bits.
                     if point.index() >= n_surface {
                         out[point] = at;
                     }

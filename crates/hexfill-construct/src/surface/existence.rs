@@ -7,6 +7,7 @@
 use super::linking::{Linking, LinkingError, linking};
 use super::nesting::solids;
 use super::polygons::Darts;
+use crate::missing::MissingInterior;
 use hexfill_mesh::{Context, Edge, ImproperPair, Offenders, QuadId, QuadSurface, bipartition, improper_pairs};
 use std::collections::BTreeSet;
 use std::fmt;
@@ -122,6 +123,9 @@ fn odd_solid(surface: &QuadSurface, points: Option<&[[f64; 3]]>) -> Option<Exist
                 .into(),
         );
     };
+    if points.len() < surface.n_vertices() || !points.iter().flatten().all(|x| x.is_finite()) {
+        return unknown(MissingInterior::PositionsMissing.to_string());
+    }
     let mut triangles = Vec::with_capacity(2 * surface.n_quads());
     let mut component = Vec::with_capacity(2 * surface.n_quads());
     for (q, quad) in surface.quads().iter().enumerate() {
@@ -130,7 +134,7 @@ fn odd_solid(surface: &QuadSurface, points: Option<&[[f64; 3]]>) -> Option<Exist
         component.extend([surface.component(QuadId::new(q)); 2]);
     }
     match solids(&triangles, &component, size.len(), points) {
-        Err(reason) => unknown(reason),
+        Err(reason) => unknown(reason.to_string()),
         Ok(solids) => solids.into_iter().find_map(|components| {
             let given: usize = components.iter().map(|&c| size[c]).sum();
             (!given.is_multiple_of(2)).then_some(Existence::OddSolid { components, given })
@@ -138,7 +142,23 @@ fn odd_solid(surface: &QuadSurface, points: Option<&[[f64; 3]]>) -> Option<Exist
     }
 }
 
-/// Decides existence. `points` are needed only if the surface has odd cycles (never for spheres).
+/// Decides existence. `points`, a position for each vertex id in any unit, are needed only if the surface has odd cycles or several components
+/// of which some have odd numbers of quads (never for one sphere); where they are needed and too few or not finite the answer is
+/// [`Existence::Unknown`]. Linear time, but for surfaces with handles and odd cycles: linking numbers of 2 g loops.
+///
+/// # Example
+/// ```
+/// use hexfill_construct::{Existence, existence};
+/// use hexfill_mesh::QuadSurface;
+///
+/// // Three quads from pole to pole: closed, but any two share three vertices.
+/// let quads = [[0, 1, 4, 2], [0, 2, 4, 3], [0, 3, 4, 1]];
+/// assert!(matches!(existence(&QuadSurface::try_new(5, &quads)?, None), Existence::OddQuads { given: 3 }));
+///
+/// let quads = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
+/// assert!(matches!(existence(&QuadSurface::try_new(8, &quads)?, None), Existence::Exists { .. }));
+/// # Ok::<(), hexfill_mesh::SurfaceError>(())
+/// ```
 pub fn existence(surface: &QuadSurface, points: Option<&[[f64; 3]]>) -> Existence {
     if let Some(no) = forbidden(surface) {
         return no;
@@ -157,7 +177,7 @@ pub fn existence(surface: &QuadSurface, points: Option<&[[f64; 3]]>) -> Existenc
     let s = Darts::of_surface(surface);
     let l = match linking(&s, points, &Context::default()) {
         Ok(l) => l,
-        Err(LinkingError::Undecided(reason)) => return Existence::Unknown { reason: reason.into() },
+        Err(LinkingError::Undecided(reason)) => return Existence::Unknown { reason: reason.to_string() },
         Err(LinkingError::Stopped(reason)) => return Existence::Unknown { reason: format!("stopped: {reason:?}") },
     };
     odd_cycle_inside(&s, &l)

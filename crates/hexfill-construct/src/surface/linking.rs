@@ -8,6 +8,7 @@
 //! intersection form, is invertible over Z (checked modulo 2 and modulo an odd prime).
 
 use super::polygons::{DartId, Darts, TreeCotree, tree_cotree, tree_loop};
+use crate::missing::MissingInterior;
 use hexfill_geometry::{Vector, add, add_scaled, cross, dot, norm, sub, unit};
 use hexfill_mesh::{Context, StopReason, VertexId};
 
@@ -22,6 +23,8 @@ pub(crate) struct Linking {
 fn gauss(a: Vector, b: Vector, c: Vector, d: Vector) -> f64 {
     let (r13, r14, r23, r24) = (sub(c, a), sub(d, a), sub(c, b), sub(d, b));
     let n = [cross(r13, r14), cross(r14, r24), cross(r24, r23), cross(r23, r13)].map(unit);
+    // An end of one segment in line with the other: all four ends lie in a plane, and the segments see each other in
+    // no area.
     let [Some(n1), Some(n2), Some(n3), Some(n4)] = n else { return 0.0 };
     let asin = |x: f64| x.clamp(-1.0, 1.0).asin();
     let area = asin(dot(n1, n2)) + asin(dot(n2, n3)) + asin(dot(n3, n4)) + asin(dot(n4, n1));
@@ -30,10 +33,10 @@ fn gauss(a: Vector, b: Vector, c: Vector, d: Vector) -> f64 {
 }
 
 /// Why there are no linking numbers.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) enum LinkingError {
     /// The positions do not tell.
-    Undecided(&'static str),
+    Undecided(MissingInterior),
     /// The work was told to stop.
     Stopped(StopReason),
 }
@@ -46,16 +49,14 @@ use LinkingError::Undecided as failed;
 /// [`LinkingError`] if the positions do not tell (degenerate or self-intersecting surface), or told to stop.
 pub(crate) fn linking(s: &Darts, points: &[Vector], ctx: &Context<'_>) -> Result<Linking, LinkingError> {
     if points.len() < s.n_vertices || points.iter().flatten().any(|x| !x.is_finite()) {
-        return Err(failed("the positions are missing or not finite"));
+        return Err(failed(MissingInterior::PositionsMissing));
     }
     let trees = tree_cotree(s);
     let loops: Vec<Vec<DartId>> = trees.left.iter().map(|&d| tree_loop(s, &trees.parent, d)).collect();
     let at = |v: VertexId| points[v.index()];
     let mut pushed: Vec<Vec<Vector>> = Vec::new();
     for l in &loops {
-        pushed.push(push(s, points, l).ok_or(failed(
-            "the corners of a face lie on a line, so that the positions do not tell the inside; see `hexfill doctor`",
-        ))?);
+        pushed.push(push(s, points, l).ok_or(failed(MissingInterior::FaceWithoutNormal))?);
     }
     let mut numbers = vec![vec![0i64; loops.len()]; loops.len()];
     for (i, l) in loops.iter().enumerate() {
@@ -71,7 +72,7 @@ pub(crate) fn linking(s: &Darts, points: &[Vector], ctx: &Context<'_>) -> Result
                 }
             }
             if (sum - sum.round()).abs() > 0.05 {
-                return Err(failed("linking numbers are not whole: the surface is degenerate or meets itself"));
+                return Err(failed(MissingInterior::LinkingNotWhole));
             }
             numbers[i][j] = sum.round() as i64;
         }
@@ -80,10 +81,10 @@ pub(crate) fn linking(s: &Darts, points: &[Vector], ctx: &Context<'_>) -> Result
     let form: Vec<Vec<i64>> = (0..n).map(|i| (0..n).map(|j| numbers[i][j] - numbers[j][i]).collect()).collect();
     for p in [2, 1_000_003] {
         if rank(&form, p) != n {
-            return Err(failed("linking numbers contradict the intersections of loops: the surface meets itself"));
+            return Err(failed(MissingInterior::LinkingAgainstIntersections));
         }
         if 2 * rank(&numbers, p) != n {
-            return Err(failed("linking numbers contradict Alexander duality: the surface meets itself"));
+            return Err(failed(MissingInterior::LinkingAgainstDuality));
         }
     }
     Ok(Linking { trees, loops, numbers })

@@ -3,19 +3,20 @@
 //! A component lies inside another iff the other winds round one of its vertices ([`holders`]). At even depth it is the outside
 //! of a solid, at odd depth a cavity of the solid round it; outsides must face outward (positive volume), cavities the other way.
 
+use crate::missing::MissingInterior;
 use hexfill_geometry::{Vector, det, holders, sub};
 use hexfill_mesh::VertexId;
 
 /// The solids as lists of components, the outside first; ascending by outside. `component[t]` is that of triangle `t`.
 ///
 /// # Errors
-/// A sentence: a component faces the wrong way for its depth.
+/// A component that faces the wrong way for its depth, or lies in no solid.
 pub(crate) fn solids(
     triangles: &[[VertexId; 3]],
     component: &[usize],
     n_components: usize,
     points: &[Vector],
-) -> Result<Vec<Vec<usize>>, String> {
+) -> Result<Vec<Vec<usize>>, MissingInterior> {
     let mut parts: Vec<Vec<[Vector; 3]>> = vec![Vec::new(); n_components];
     for (t, &c) in triangles.iter().zip(component) {
         parts[c].push(t.map(|v| points[v.index()]));
@@ -29,20 +30,20 @@ pub(crate) fn solids(
     let mut solid_of = vec![usize::MAX; n_components];
     for c in (0..n_components).filter(|&c| around[c].len().is_multiple_of(2)) {
         if volume(&parts[c]) <= 0.0 {
-            return Err(format!("component {c} is the outside of a solid and faces inward: reverse its quads"));
+            return Err(MissingInterior::OutsideFacesInward { component: c });
         }
         solid_of[c] = solids.len();
         solids.push(vec![c]);
     }
     for c in (0..n_components).filter(|&c| !around[c].len().is_multiple_of(2)) {
         if volume(&parts[c]) >= 0.0 {
-            return Err(format!("component {c} is a cavity and faces outward: reverse its quads"));
+            return Err(MissingInterior::CavityFacesOutward { component: c });
         }
         // The innermost component around it.
         let outside = around[c].iter().copied().max_by_key(|&o| around[o].len());
         match outside.map(|o| solid_of[o]).filter(|&s| s != usize::MAX) {
             Some(s) => solids[s].push(c),
-            None => return Err(format!("component {c} is in no solid: components meet each other")),
+            None => return Err(MissingInterior::InNoSolid { component: c }),
         }
     }
     Ok(solids)

@@ -13,7 +13,8 @@ pub(crate) fn check(surface: &QuadSurface, made: &Construction) {
     let hexes: Vec<[u32; 8]> = made.mesh.hexes().iter().map(|h| h.map(|v| v.0)).collect();
     let quads: Vec<[u32; 4]> = surface.quads_raw();
     let input = Judged::connectivity(made.mesh.n_vertices(), &hexes).with_surface(&quads);
-    let report = judge(&input, &hexfill_check::Options::default().up_to(Level::L3).betti(false), &Context::default());
+    let report =
+        judge(&input, &hexfill_check::Options::default().with_up_to(Level::L3).with_betti(false), &Context::default());
     assert!(report.passed(Level::L3), "{:?}", report.failures);
     assert_eq!(hexes.len(), made.report.n_hexes());
     assert!(made.mesh.used_vertices().iter().all(|&u| u));

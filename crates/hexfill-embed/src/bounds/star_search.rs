@@ -32,12 +32,14 @@ pub(super) fn search(star: &Directions, known: f64, enough: f64, nodes: usize) -
     let mut heap = BinaryHeap::new();
     let mut made = 0;
     let mut consider = |pieces: Vec<Piece>, limit: f64, attained: &mut f64, heap: &mut BinaryHeap<Node>| {
+        // No answer of the linear program is no proof: the node keeps the bound of its parent and stays open.
         let Some(relaxed) = relax(star, &pieces) else {
             heap.push(Node { bound: limit, split: 0, pieces, number: made });
             made += 1;
             return;
         };
         *attained = attained.max(relaxed.attained);
+        // What bounds a piece of the sphere bounds its halves.
         let bound = relaxed.bound.min(limit);
         heap.push(Node { bound, split: relaxed.split, pieces, number: made });
         made += 1;
@@ -55,6 +57,7 @@ pub(super) fn search(star: &Directions, known: f64, enough: f64, nodes: usize) -
             consider(pieces, node.bound, &mut attained, &mut heap);
         }
     }
+    // The largest bound of what is still open holds whenever one stops.
     let bound = heap.peek().map_or(attained, |top| top.bound).max(attained);
     Interval { attained, bound }
 }
@@ -72,6 +75,7 @@ fn relax(star: &Directions, pieces: &[Piece]) -> Option<Relaxed> {
     let mut second = vec![[0.0; 3]; star.pairs.len()];
     let mut third = vec![0.0; star.triples.len()];
     for (i, weight) in step.weights.iter().enumerate() {
+        // Any weights give a bound, so those of a program solved in floating point will do; good ones make it small.
         let w = weight / total;
         let columns = star.columns(i, &centres);
         bound += w * det(columns[0], columns[1], columns[2]);
@@ -107,6 +111,7 @@ fn relax(star: &Directions, pieces: &[Piece]) -> Option<Relaxed> {
             blame[j] += term * pieces[j].radius;
         }
     }
+    // The piece that the error of the bound owes most to: halving another one would gain little.
     let mut split = 0;
     for j in 1..star.n_free {
         if blame[j] > blame[split] {

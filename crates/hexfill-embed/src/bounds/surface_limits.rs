@@ -79,6 +79,20 @@ pub struct EdgeLimit {
 
 /// The limits of a surface whose quads face outward, with `points[v]` the position of vertex v, in any unit.
 /// Returns `None` if a used vertex has no finite position. Linear time but for the sorting, on all threads of the surrounding pool.
+///
+/// # Example
+/// ```
+/// use hexfill_embed::surface_limits;
+/// use hexfill_mesh::QuadSurface;
+///
+/// let quads = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
+/// let corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]];
+/// let limits = surface_limits(&QuadSurface::try_new(8, &quads)?, &corners.map(|p| p.map(f64::from)));
+/// let limits = limits.expect("one finite position a vertex");
+/// assert!(limits.edges.iter().all(|edge| (edge.degrees - 90.0).abs() < 1e-9));
+/// assert!(limits.vertices[0].bound > 0.57); // one more edge in a corner of a cube: along its diagonal
+/// # Ok::<(), hexfill_mesh::SurfaceError>(())
+/// ```
 pub fn surface_limits(surface: &QuadSurface, points: &[[f64; 3]]) -> Option<SurfaceLimits> {
     let placed = |v: &VertexId| points.get(v.index()).is_some_and(|p| p.iter().all(|x| x.is_finite()));
     if !surface.quads().iter().flatten().all(placed) {

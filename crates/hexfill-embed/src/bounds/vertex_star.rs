@@ -88,6 +88,7 @@ fn star(problem: &Problem, points: &[Vector], v: u32, corners: &[[u32; 3]]) -> S
     let mut tight = true;
     for ends in corners {
         let n_free = ends.iter().filter(|&&w| !is_fixed(w)).count();
+        // Left out, which can only raise the bound: it still holds, but is no longer known to be attained.
         if n_free > 1 {
             tight = false;
             continue;
@@ -102,6 +103,8 @@ fn star(problem: &Problem, points: &[Vector], v: u32, corners: &[[u32; 3]]) -> S
         }
     }
     let by_direction =
+        // Free edges are placed each for itself, as if no corner had two of them: the least of the maxima bounds the
+        // maximum of the least.
         normals.iter().filter(|n| !n.is_empty()).map(|n| best_direction(n).value).fold(least, f64::min).min(1.0);
     let angle_bound = angle_bound(corners, |w| is_fixed(w).then(|| direction(w)));
     let ray = |w: u32| match free.binary_search(&w) {
@@ -136,6 +139,8 @@ pub(crate) fn refine_stars(stars: &mut [Star], hint: &[Vector], context: &Contex
     });
     open.sort_by(|a, b| a.bound.attained.total_cmp(&b.bound.attained).then(a.bound.vertex.cmp(&b.bound.vertex)));
     for star in open.into_iter().take(MOST_SEARCHED) {
+        // Directions that reach the least bound of the mesh are known: whatever this star's own bound is, it does not
+        // decide.
         if context.stop().is_some() || star.bound.attained >= least {
             break;
         }

@@ -41,6 +41,7 @@ impl Frame {
             boxes += 1;
             let (b, n) = (frame.bernstein(), frame.lengths());
             let positive = |c: usize| b[c] > RELATIVE * n[c];
+            // Corner coefficients are values of det J: one that is not positive settles the whole cell.
             if [0, 2, 6, 8, 18, 20, 24, 26].into_iter().any(|c| !positive(c)) {
                 return Sign::NotPositive;
             }
@@ -87,6 +88,7 @@ impl Frame {
                 lower = part.bound;
                 break;
             }
+            // All axes in turn: halved along one alone a box would stay as curved along the others.
             let axis = part.depth % 3;
             for (side, half) in part.frame.halves(axis).into_iter().enumerate() {
                 boxes += 1;
@@ -98,6 +100,7 @@ impl Frame {
             }
         }
         seen.retain(|&(value, at)| value <= upper + 0.01 && at.iter().any(|&x| x > 0.0 && x < 1.0));
+        // By value and then by place, so that the points watched are the same for any order of boxes.
         seen.sort_by(|a, b| a.0.total_cmp(&b.0).then_with(|| a.1.partial_cmp(&b.1).expect("positions are finite")));
         seen.dedup();
         seen.truncate(8);

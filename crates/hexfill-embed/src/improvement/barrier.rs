@@ -134,6 +134,8 @@ impl Barrier<'_> {
         let limits = lbfgs::Limits { iterations, relative_decrease: 1e-3, memory };
         let mut stopped = None;
         for _ in 0..restarts {
+            // Anew after every restart: near the barrier curvatures change by orders of magnitude on the way down,
+            // and pairs remembered from before mislead.
             let diagonal = self.inverse_diagonal(points);
             let before = rows.iter().map(|row| row.0).sum::<f64>();
             let found = minimise(
@@ -177,6 +179,7 @@ impl Barrier<'_> {
             if det(c[0], c[1], c[2]) * (i * j * k) >= end + 1e-12 {
                 continue;
             }
+            // An edge of no length has no direction: outside the domain, and the line search comes back from there.
             let Some((s, g)) = scaled_with_gradient(&c) else { return (f64::INFINITY, gradient) };
             let (v, slope, _) = self.penalty.at(s - self.level, self.width);
             value += v;
@@ -236,6 +239,7 @@ impl Barrier<'_> {
                 for (g, &end) in g.iter().zip(ends) {
                     sum[end] += curvature * dot(*g, *g) / 3.0;
                 }
+                // The corner itself moves all three edges at once, against the directions of their ends.
                 let own = g.iter().fold([0.0; 3], |s, &g| add(s, g));
                 sum[corner] += curvature * dot(own, own) / 3.0;
             }

@@ -29,6 +29,8 @@ pub(crate) struct Energy<'p> {
 /// `chi(e, D)`, without cancellation for negative D.
 pub(crate) fn chi(epsilon: f64, d: f64) -> f64 {
     let root = epsilon.hypot(d);
+    // For d << 0 the sum d + root cancels to nothing; the other form is the same number with the root in the
+    // denominator.
     if d > 0.0 { 0.5 * (d + root) } else { 0.5 * epsilon * epsilon / (root - d) }
 }
 

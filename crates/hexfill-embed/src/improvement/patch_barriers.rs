@@ -101,12 +101,15 @@ pub(crate) fn lift_poor_cells(
         }
         let tau = pace.level(worst, target);
         let cells = judge(problem, points, tau);
+        // Patches are disjoint and their outer cells good, where the barrier is flat: so they can be worked on at
+        // once and put together.
         let seeds: Vec<usize> = (0..n_hexes).filter(|&h| cells.each[h].value < tau).collect();
         let parts = patches(problem, incidence, &seeds, pace.rings);
         let size: usize = parts.iter().map(|part| part.problem.hexes.len()).sum();
         context.report("lift", pass as u64, None, || {
             format!("worst {worst:.6}, {} cells below {tau:.4}, {} patches of {size} cells", seeds.len(), parts.len())
         });
+        // A bound on work and not on time, or the result would depend on the machine.
         if size > *visits {
             if !pace.narrow() {
                 return None;
@@ -154,6 +157,7 @@ fn lift_patch(
         return None;
     }
     let mut inner: Vec<Vec<Vector>> = before.each.iter().map(|c| watched(c, tau)).collect();
+    // First with room below the worst, for large moves; a level close to it pulls at the worst cell alone.
     for share in [0.5, 0.8, 0.95] {
         if context.stop().is_some() {
             break;
@@ -163,6 +167,8 @@ fn lift_patch(
         Barrier { problem, inner: &inner, floors, penalty, level, width: tau - level }
             .descend(&mut trial, DESCENT, context);
         let after = judge(problem, &trial, tau);
+        // Better than before in whole cells is all that counts; the first share that gives it ends the work on this
+        // patch.
         if after.worst > before.worst {
             return Some(trial);
         }

@@ -48,6 +48,8 @@ fn patches_round_worst(
         if seeds == 1 && largest > LONE_CELLS {
             return None;
         }
+        // The work of a program grows faster than its cells: the worst first, and as many of them as leave patches
+        // small.
         if seeds == 1 || largest <= CLIMB_CELLS {
             return Some((seeds, parts));
         }
@@ -73,6 +75,8 @@ pub(crate) fn climb_worst(
         if cells.worst >= target {
             return None;
         }
+        // Where a round gains nothing the next has larger patches: what held the worst cells may lie a ring further
+        // out.
         let (seeds, parts) = patches_round_worst(problem, incidence, &cells, target, 1 + stale)?;
         context.report("optimise patches", round as u64, Some(rounds as u64), || {
             format!("worst {:.6}, {seeds} cells in {} patches", cells.worst, parts.len())

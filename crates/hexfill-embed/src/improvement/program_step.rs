@@ -53,6 +53,8 @@ pub(super) fn solve(model: &Model<'_>, rows: &[Row], curvature: &[(Place, f64)])
     }
     let n_rows = program.n_rows();
     for i in 0..t {
+        // A box and not a ball, so that the program stays linear; each vertex moves on the scale of its own shortest
+        // edge.
         program.row([(i, 1.0)], 1.0);
         program.row([(i, -1.0)], 1.0);
     }
@@ -68,6 +70,7 @@ pub(super) fn solve(model: &Model<'_>, rows: &[Row], curvature: &[(Place, f64)])
         });
     }
     let solution = program.solve()?;
+    // The rows alone would promise t; along the step they bend down by this much.
     let taken_off: f64 = bent
         .iter()
         .map(|&(i, j, v)| (if i == j { 0.5 } else { 1.0 }) * v * solution.point[i] * solution.point[j])
@@ -78,6 +81,7 @@ pub(super) fn solve(model: &Model<'_>, rows: &[Row], curvature: &[(Place, f64)])
         .filter(|(row, m)| **m > 1e-7 && (row.objective == matches!(goal, Goal::ScaledJacobian { .. })))
         .map(|(row, &m)| (row.place, m))
         .collect();
+    // The solver is inside its bounds up to its own tolerance.
     let direction = (0..t).map(|i| solution.point[i].clamp(-1.0, 1.0) * radius * reach[i]).collect();
     Some(Step { direction, promised: solution.point[t] - taken_off, multipliers })
 }

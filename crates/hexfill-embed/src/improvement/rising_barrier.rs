@@ -51,6 +51,7 @@ pub(crate) fn follow_worst(
             return Some(reason);
         }
         let worst = cells.worst;
+        // An invalid cell is outside every barrier: nothing to climb from.
         if worst <= 0.0 || worst >= target {
             return None;
         }
@@ -70,6 +71,7 @@ pub(crate) fn follow_worst(
         let mut trial = points.clone();
         let descent = Descent { iterations: limits.iterations, memory: MEMORY, restarts: 1 };
         let stopped = barrier.descend(&mut trial, descent, context);
+        // The barrier watches corners and a few inner points; only bisection sees the cells whole.
         let trial_cells = judge_near_worst(problem, &trial, worst, SEEN);
         let gain = trial_cells.worst - worst;
         if gain > 0.0 {

@@ -51,6 +51,8 @@ pub(crate) fn climb(
     let mut iterations = 0;
     let mut stopped = None;
     while iterations < limits.iterations && climber.radius > 1e-9 && problem.n_variables() > 0 {
+        // On the way cells are judged with a coarse error; whether the target is reached is not for such a value to
+        // say.
         if climber.has_reached_target() {
             if !climber.look_closely(points) {
                 break;
@@ -165,6 +167,7 @@ impl<'p> Climber<'p> {
         let gain = reached - self.value;
         self.multipliers = step.multipliers;
         self.learn(gain, step.promised);
+        // By the true worst over whole cells, never by the model: no step can trade validity for corners.
         if gain > 0.0 {
             *points = trial;
             self.cells = cells;
@@ -176,6 +179,8 @@ impl<'p> Climber<'p> {
     /// The trust region after a step: narrower where the model promised too much, wider where it held.
     fn learn(&mut self, gain: f64, promised: f64) {
         self.rejected = if gain > 0.0 { 0 } else { self.rejected + 1 };
+        // The thresholds of textbook trust regions (Fletcher 1987): a quarter for a bad model, near all of it for a
+        // good one.
         if gain < 0.25 * promised {
             self.radius *= 0.35;
             // Linear steps zigzag along a ridge: bend the model.

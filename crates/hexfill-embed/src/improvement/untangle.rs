@@ -56,6 +56,8 @@ pub(crate) fn untangle(
     let mut spent = 0;
     for round in 0..limits.rounds {
         let before = energy.evaluate(points, &mut gradient);
+        // Each eps is minimised roughly only: what the schedule needs of a round is a share of the way down, not the
+        // minimum.
         let (after, stopped) = minimise_energy(&mut energy, &mut x, points, limits, &mut spent, context);
         smallest = energy.smallest_determinant(points);
         context.report("untangle", round as u64, Some(limits.rounds as u64), || {
@@ -79,6 +81,7 @@ pub(crate) fn untangle(
             break;
         }
         energy.epsilon = next_epsilon(energy.epsilon, smallest, before, after);
+        // Cells change their size while they untangle, and a term is read in units of its hex.
         energy.measure(points);
         smallest = energy.smallest_determinant(points);
         // New units can only be met by an eps that keeps the energy finite.
@@ -154,6 +157,7 @@ fn first_epsilon(smallest: f64) -> f64 {
 
 /// The eps after one that lowered the energy from `before` to `after`: see the module page.
 fn next_epsilon(epsilon: f64, smallest: f64, before: f64, after: f64) -> f64 {
+    // The start may have been infinite; then nothing is known of the fall, and half is as good a guess as any.
     let ratio = if before.is_finite() && before > 0.0 { after / before } else { 0.5 };
     let sigma = (1.0 - ratio).max(0.1);
     let mu = (1.0 - sigma) * chi(epsilon, smallest);
@@ -181,6 +185,8 @@ fn add_failing_terms(problem: &Problem, points: &[Vector], energy: &mut Energy<'
         let frame = Frame::new(&problem.corners_of(h, points));
         for (n, m) in MIXED.iter().enumerate() {
             let [a, b, c] = m.edges;
+            // Sufficient and not necessary: a cell with all mixed determinants positive is positive inside, so only
+            // cells that fail the test pay for them.
             if det(frame.0[0][a], frame.0[1][b], frame.0[2][c]) <= 0.0 {
                 energy.terms[h] |= 1 << n;
             }

@@ -47,6 +47,7 @@ pub(crate) fn minimise(
     while iterations < limits.iterations && value.is_finite() {
         two_loop(&pairs, inverse_diagonal, &gradient, &mut direction);
         let mut slope = dot_long(&gradient, &direction);
+        // Rounding alone can do this, since every pair has positive curvature: forget them rather than give up.
         if slope >= 0.0 && !pairs.is_empty() {
             pairs.clear();
             two_loop(&pairs, inverse_diagonal, &gradient, &mut direction);
@@ -72,6 +73,8 @@ pub(crate) fn minimise(
         let s: Vec<f64> = trial.iter().zip(&*x).map(|(a, b)| a - b).collect();
         let y: Vec<f64> = trial_gradient.iter().zip(&gradient).map(|(a, b)| a - b).collect();
         let sy = dot_long(&s, &y);
+        // The weak Wolfe condition makes this positive but for rounding, and for the step taken where no such point
+        // was found.
         if sy > 1e-14 * (dot_long(&s, &s) * dot_long(&y, &y)).sqrt() {
             if pairs.len() == limits.memory {
                 pairs.pop_front();
@@ -100,6 +103,8 @@ fn weak_wolfe(value: f64, slope: f64, mut at: impl FnMut(f64) -> (f64, f64)) -> 
     let (mut low, mut high, mut step) = (0.0, f64::INFINITY, 1.0);
     for _ in 0..40 {
         let (v, slope_there) = at(step);
+        // Infinite outside the domain compares as too high, so the search comes back by itself; no projection is
+        // needed.
         if v.is_nan() || v > value + 1e-4 * step * slope {
             high = step;
         } else {
@@ -122,6 +127,8 @@ fn two_loop(pairs: &VecDeque<(Vec<f64>, Vec<f64>, f64)>, diagonal: &[f64], gradi
         add_long(out, -alpha, y);
         alphas.push(alpha);
     }
+    // The usual scaling of the first matrix by the newest pair (Nocedal 1980), measured in the metric of the
+    // diagonal.
     let gamma = pairs.back().map_or(1.0, |(_, y, rho)| {
         let scaled: Vec<f64> = y.iter().zip(diagonal).map(|(y, d)| y * d).collect();
         1.0 / (rho * dot_long(y, &scaled))

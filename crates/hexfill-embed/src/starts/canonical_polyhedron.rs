@@ -10,7 +10,7 @@ use super::circle_layout::touching_points;
 use super::circle_packing::Packing;
 use crate::error::EmbedError;
 use hexfill_geometry::{Vector, add, add_scaled, cross, dot, norm, scale, sub, unit};
-use hexfill_mesh::{QuadId, QuadSurface, VertexId};
+use hexfill_mesh::{Edge, ImproperPair, QuadSurface, improper_pairs};
 
 /// The vertices of the canonical polyhedron of a surface, outward oriented: edges tangent to the unit sphere, touching points
 /// centred at the origin, quads planar (to about 1e-14 for surfaces of up to some hundred quads). One point per vertex id;
@@ -33,17 +33,12 @@ pub fn canonical_polyhedron(surface: &QuadSurface) -> Result<Vec<[f64; 3]>, Embe
     Ok(points)
 }
 
-/// On a quad sphere, 3-connected means that no two quads share both ends of a diagonal.
+/// On a quad sphere, 3-connected means that no two quads share both ends of a diagonal: it has no improper pair.
 fn check_three_connected(surface: &QuadSurface) -> Result<(), EmbedError> {
-    let mut diagonals: Vec<(VertexId, VertexId, QuadId)> = Vec::with_capacity(2 * surface.n_quads());
-    for (q, &[a, b, c, d]) in surface.quads().iter().enumerate() {
-        for (s, t) in [(a, c), (b, d)] {
-            diagonals.push((s.min(t), s.max(t), QuadId::new(q)));
+    match improper_pairs(surface).first.first() {
+        Some(&ImproperPair { quads: [first, second], vertices: Edge(a, b) }) => {
+            Err(EmbedError::NotThreeConnected { first, second, a, b })
         }
-    }
-    diagonals.sort_unstable();
-    match diagonals.windows(2).find(|w| (w[0].0, w[0].1) == (w[1].0, w[1].1)) {
-        Some(w) => Err(EmbedError::NotThreeConnected { first: w[0].2, second: w[1].2, a: w[0].0, b: w[0].1 }),
         None => Ok(()),
     }
 }
@@ -74,6 +69,7 @@ fn centre(points: &mut [Vector]) {
         }
         let Some(klein) = solve3(h, mean) else { break };
         let length = norm(klein);
+        // A full Newton step may leave the ball, in which all boosts are.
         let klein = if length > 0.9 { scale(0.9 / length, klein) } else { klein };
         // The same boost in the ball model that acts on the sphere by inversions.
         let c = scale(1.0 / (1.0 + (1.0 - dot(klein, klein)).sqrt()), klein);
@@ -109,6 +105,8 @@ fn apexes(surface: &QuadSurface, touching: &[Vector]) -> Vec<Vector> {
             let q = ring[(i + 1) % ring.len()];
             normal = add(normal, cross(sub(q, middle), sub(p, middle)));
         }
+        // The pole of the plane n . x = n . m with respect to the unit sphere: n / (n . m), the apex of the cone that
+        // touches along its circle.
         points[v] = scale(1.0 / dot(normal, middle), normal);
     }
     points

@@ -48,6 +48,7 @@ impl Packing {
         is_line[surface.target(infinite).index()] = true;
         is_line[n_vertices + infinite.quad().index()] = true;
         is_line[n_vertices + surface.twin(infinite).quad().index()] = true;
+        // Kites round a circle fill the full angle.
         let mut target = vec![TAU; n];
         let mut kites = Vec::new();
         for d in surface.darts() {
@@ -99,6 +100,8 @@ impl Packing {
                 let trial_g = self.gradient(&trial, &used);
                 // The function is convex: its derivative along the step must not have overshot.
                 let along: f64 = -trial_g.iter().zip(&step).map(|(g, s)| g * s).sum::<f64>();
+                // Values of the function need dilogarithms and its derivative does not: convexity lets the search do
+                // with slopes alone.
                 if along <= 0.9 * slope.abs() {
                     moved = Some((trial, trial_g));
                     break;
@@ -134,6 +137,8 @@ impl Packing {
                 out[q] -= flow;
             }
         };
+        // Radii are determined up to a common factor, so L is singular along constants; rounding must not put
+        // anything there.
         let mean = g.iter().sum::<f64>() / used.iter().filter(|&&u| u).count() as f64;
         let residual: Vec<f64> = (0..n).map(|i| if used[i] { g[i] - mean } else { 0.0 }).collect();
         let scaled: Vec<f64> = residual.iter().zip(&diagonal).map(|(r, d)| r / d).collect();

@@ -79,7 +79,7 @@ pub(crate) fn ball(n: usize) -> (HexMesh, Vec<[f64; 3]>) {
 pub(crate) fn certified(mesh: &HexMesh, points: &[[f64; 3]]) -> (bool, [f64; 2]) {
     let hexes = mesh.hexes_raw();
     let input = Judged::connectivity(mesh.n_vertices(), &hexes).with_points(points);
-    let report = judge(&input, &hexfill_check::Options::default().quality(true), &Context::default());
+    let report = judge(&input, &hexfill_check::Options::default().with_quality(true), &Context::default());
     let interval = report.geometry.as_ref().and_then(|g| g.quality.as_ref()).map(|q| q.certified_scaled_jacobian);
     (report.passed(Level::L5), interval.unwrap_or([-1.0; 2]))
 }

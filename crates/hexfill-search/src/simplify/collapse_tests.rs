@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 /// Whether a mesh of these hexes, same vertex ids, is proper and a manifold ball with the boundary quads of `before`.
 fn is_sound(before: &HexMesh, hexes: &[[u32; 8]]) -> bool {
     let boundary: Vec<[u32; 4]> = before.boundary_quads().into_iter().map(|q| q.map(|v| v.0)).collect();
-    let options = Options::default().up_to(Level::L3).quality(false);
+    let options = Options::default().with_up_to(Level::L3).with_quality(false);
     let judged = Judged::connectivity(before.n_vertices(), hexes).with_surface(&boundary);
     let report = judge(&judged, &options, &Context::default());
     report.passed(Level::L3) && report.facts.ball == Some(Ball::Yes)

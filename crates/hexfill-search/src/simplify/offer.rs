@@ -133,6 +133,7 @@ impl<'a> Worker<'a> {
         let mut own: Option<Pairs> = None;
         for state in states {
             let gain = size - self.atlas.hexes_of(state) as i32;
+            // States come with the fewest hexes first: nothing better follows.
             if gain < least_gain {
                 break;
             }
@@ -147,6 +148,7 @@ impl<'a> Worker<'a> {
             let filling = self.fillings.entry(state).or_insert_with(|| replayed(atlas, state));
             let Some(filling) = filling.as_ref().filter(|f| f.code == self.canonical.code()) else { continue };
             let flags = self.canonical.flags();
+            // Of fillings of the same size any may lead on; where hexes are saved the first way round will do.
             let first = if gain > 0 { 0 } else { random.below(flags.len()) };
             for i in 0..flags.len() {
                 let flag = flags[(first + i) % flags.len()];
@@ -155,6 +157,7 @@ impl<'a> Worker<'a> {
                 if used.iter().zip(&cavity.blocked).any(|(a, b)| a & b != 0) {
                     continue;
                 }
+                // The same pairs inside are as a rule the same filling again, and no step.
                 if gain <= 0 && used == *own.get_or_insert_with(|| inside_pairs(mesh, region, &cavity, &ids)) {
                     continue;
                 }

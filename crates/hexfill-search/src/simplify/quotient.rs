@@ -67,6 +67,7 @@ impl Quotient {
         if self.vertices.iter().any(|pair| pair.iter().all(|&v| on_boundary(v))) {
             return Err(Refusal::Boundary);
         }
+        // Trees, or a fibre is not contractible and the image no longer the same space (Cohen 1967).
         let mut vertices = Sets::forest(&self.vertices)?;
         let mut edges = Sets::forest(&self.edges)?;
         let name = |f: u32| f.min(mesh.neighbour(f));
@@ -77,6 +78,8 @@ impl Quotient {
         touched.dedup();
         let mut target: FxHashMap<u32, u32> = FxHashMap::default();
         for &v in touched.iter().filter(|&&v| on_boundary(v)) {
+            // With one boundary vertex at most a fibre lies inside a collar and leaves the boundary alone; with two
+            // it would press the boundary.
             if target.insert(vertices.root(v), v).is_some() {
                 return Err(Refusal::Boundary);
             }
@@ -119,6 +122,7 @@ impl Quotient {
             }
             joined.sort_unstable();
             joined.dedup();
+            // Two different cells on one pair: the pair table of the whole mesh, asked only where it can change.
             if joined.windows(2).any(|w| w[0].0 == w[1].0) {
                 return Err(Refusal::Improper);
             }

@@ -150,6 +150,7 @@ impl Region {
             }
         }
         let n = self.boundary.len();
+        // Each shared quad goes from both: n + 6 - 2 s are left.
         found.retain(|c| n + 6 <= max_quads + 2 * c.shared as usize && self.may_join(mesh, c.hex));
         self.candidates = found;
         &self.candidates

@@ -25,7 +25,7 @@ pub(crate) fn assert_sound(before: &HexMesh, made: &Simplified) {
     assert!(made.mesh.n_hexes() <= before.n_hexes());
     assert_eq!((made.report.before, made.report.after), (before.n_hexes(), made.mesh.n_hexes()));
     let hexes = made.mesh.hexes_raw();
-    let options = Options::default().up_to(Level::L3).quality(false);
+    let options = Options::default().with_up_to(Level::L3).with_quality(false);
     let judged = Judged::connectivity(made.mesh.n_vertices(), &hexes);
     let report = judge(&judged, &options, &Context::default());
     assert!(report.passed(Level::L3), "{:?}", report.broken_rules());

@@ -151,6 +151,7 @@ impl<'a> Chooser<'a> {
     pub(super) fn best_choice(&self, cells: &Cells, v: u32) -> Option<Choice> {
         let fan: Vec<Dart> = self.surface.round_vertex(self.dart[v as usize]?).collect();
         let k = fan.len();
+        // All arcs are a square of the degree; at vertices of very many quads every so many ends do as well.
         let step = k.div_ceil(MOST_ENDS);
         let mut arcs: Vec<Vec<Dart>> = Vec::new();
         for start in (0..k).step_by(step) {
@@ -213,6 +214,7 @@ impl<'a> Chooser<'a> {
         for w in self.surface_vertices(&skin) {
             let (corners, n_free) = self.star_after(cells, w, &set, &skin);
             let (before, most) = (self.known(cells, known, w), star_bound(&corners, n_free));
+            // Upper bounds refuse: if the best directions for single free edges are not enough, none are.
             if most < self.least_after(v, w, before) {
                 return None;
             }
@@ -220,6 +222,7 @@ impl<'a> Chooser<'a> {
             worth += weight * (penalty(before) - penalty(most));
             stars.push((w, before, most, corners, n_free));
         }
+        // A pillow round a set whose surface is no sphere would change the space.
         if worth <= floor || !is_sphere(&skin) {
             return None;
         }

@@ -300,6 +300,7 @@ impl<'a> Trial<'a> {
 
     /// Why the surface is not worth more than one trial of each mesh, asked where none is valid yet.
     fn hopeless(&mut self) -> Option<Hopeless> {
+        // Only where nothing is valid so far: a mesh in hand is better evidence than any forecast.
         if self.options.effort == Effort::Best || !matches!(self.class(), None | Some(2)) {
             return None;
         }
@@ -348,6 +349,8 @@ impl<'a> Trial<'a> {
         }
         let is_shelled = filled.route == Route::Shelling;
         if is_shelled {
+            // Even at a worst scaled Jacobian of 1 it would have too many hexes to be kept; embedding is what costs,
+            // so it is not begun.
             let perfect = (0, within(filled.mesh.n_hexes(), 1.0, prefer));
             if self.best.as_ref().is_some_and(|(r, ..)| *r <= perfect) {
                 return Ok(());
@@ -358,6 +361,8 @@ impl<'a> Trial<'a> {
             if let Some(split) = self.split(&filled, bound)? {
                 self.consider(split)?;
             }
+            // The bound is a theorem for this mesh: no positions of inner vertices beat it. Something must be
+            // returned, so the first one is kept all the same.
             if bound <= NO_ROOM && self.best.is_some() {
                 self.seen.push(Candidate::new(&filled, Outcome::Bounded(bound)));
                 return Ok(());
@@ -386,6 +391,7 @@ impl<'a> Trial<'a> {
             let bad = placed.cells.iter().filter(|c| c.corner_scaled_jacobian <= 0.0).count();
             let least = self.tangled.as_ref().map(|t| (t.bad, t.filled.mesh.n_hexes()));
             if least.is_none_or(|least| (bad, filled.mesh.n_hexes()) < least) {
+                // Fewest bad corners first, as pillows mend corners; then fewest hexes, as each pillow brings more.
                 self.tangled = Some(Tangled { bad, filled: filled.clone(), points: placed.points.clone() });
             }
         }
@@ -410,6 +416,7 @@ impl<'a> Trial<'a> {
         let from = Filled { start: Some(start), ..filled.clone() };
         how.smooth_start = false;
         let again = place_as_it_is(&from, self.boundary, Some(&how), &self.limited());
+        // Never worse: the first placement stays where the second is not better.
         let is_better = rank(filled, &again, self.options.prefer) < rank(filled, &placed, self.options.prefer);
         if is_better { again } else { placed }
     }
@@ -457,6 +464,7 @@ impl<'a> Trial<'a> {
         more.programs = more.programs.min(self.budget.programs);
         let from = Filled { start: Some(placed.points.clone()), ..filled.clone() };
         let polished = place_as_it_is(&from, self.boundary, Some(&more), &limited);
+        // What was screened is certified already; the raise must not lose that.
         if polished.is_certified() && polished.worst() > placed.worst() {
             *placed = polished;
         }

@@ -1,8 +1,7 @@
 //! Pillows between the stages of a shelled mesh, until it has valid positions.
 //!
 //! Meshes of surfaces whose chords cross themselves heavily close with few hexes and then do not embed: too many of them meet in the void that
-//! the sweep left. A pillow, a sheet of one hex a quad, can be put round any set of hexes whose surface is a sphere (Mitchell, Tautges,
-//! *Pillowing: doublets and refinement*, 1995), so before any stage of the shelling after the fact; it takes neighbours apart that share too much. A
+//! the sweep left. A pillow, a sheet of one hex a quad, can be put round any set of hexes whose surface is a sphere (Mitchell, Tautges 1995), so before any stage of the shelling after the fact; it takes neighbours apart that share too much. A
 //! search puts pillows near corners that are not positive, untangles what lies round them, and keeps what brings the corners nearer to positive for
 //! the hexes it costs. Measured in `record/self-crossing-2026-11-22.md`, section 1; counts bound the work, not a clock.
 
@@ -81,6 +80,7 @@ pub(crate) fn with_pillows(
             .take(TOGETHER)
             .collect();
         tried += drawn.len().max(1) as u32;
+        // A short untangling tells which pillows may help; only the best few get a long one.
         let mut quick: Vec<Stage> = drawn.into_par_iter().filter_map(|stage| stage.untangled(QUICK, ctx)).collect();
         quick.sort_by(|a, b| cost(a).total_cmp(&cost(b)));
         quick.truncate(FULL);
@@ -160,6 +160,7 @@ impl Stage {
         hexes.splice(first..first, sheet);
         let mut points = self.points.clone();
         points.extend(copied.iter().map(|&v| self.points[v as usize]));
+        // Copies lie on their originals, and a sheet without volume gives untangling nothing to start from.
         draw_apart(&hexes, &mut points, self.points.len());
         Some(Self { hexes, points, bad: Vec::new(), score: 0.0 })
     }

@@ -4,16 +4,20 @@ use crate::problem::Problem;
 use hexfill_doctor::{MendOptions, Soup, mend};
 use hexfill_io::{MeshData, OtherFace, closing_tolerance, weld};
 
-/// What may be changed.
+/// What may be changed besides what has one smallest remedy.
+///
+/// | option | default |
+/// |---|---|
+/// | [`with_refine`](Self::with_refine) | no: faces stay whole where they can |
 #[derive(Clone, Copy, Debug, Default)]
 #[non_exhaustive]
 pub struct CureOptions {
-    /// Cut every face into quads.
-    pub refine: bool,
+    pub(crate) refine: bool,
 }
 
 impl CureOptions {
-    /// With every face cut into quads, or not.
+    /// Whether every face is cut into quads round its middle, a face of n sides into n.
+    #[must_use]
     pub fn with_refine(mut self, refine: bool) -> Self {
         self.refine = refine;
         self

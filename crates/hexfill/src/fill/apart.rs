@@ -38,6 +38,7 @@ pub(crate) fn fill_apart(
         if result.stop == StopReason::Finished {
             result.stop = made.stop;
         }
+        // A solid left empty is no mesh of the surface: all or nothing.
         let Some(filled) = made.meshes.pop() else { return Ok(result) };
         let n_part = part.surface.n_vertices();
         let first = n_vertices;

@@ -35,7 +35,7 @@ pub(crate) fn verify(surface: &QuadSurface, mesh: &HexMesh, route: Route) -> Res
     let hexes = mesh.hexes_raw();
     let quads = surface.quads_raw();
     let judged = Judged::connectivity(mesh.n_vertices(), &hexes).with_surface(&quads);
-    let options = hexfill_check::Options::default().up_to(Level::L3).betti(false).quality(false);
+    let options = hexfill_check::Options::default().with_up_to(Level::L3).with_betti(false).with_quality(false);
     let report = judge(&judged, &options, &Context::default());
     if report.passed(Level::L3) {
         Ok(())

@@ -36,7 +36,8 @@ use scaled::Scaled;
 /// that takes no more than a second; else the list is empty.
 ///
 /// # Errors
-/// [`FillError`].
+/// [`FillError::NoMesh`] with the theorem and its certificate; [`FillError::NotForStrategy`], [`FillError::Atlas`] and [`FillError::Construct`] if what was asked
+/// for cannot be done; [`FillError::Refused`] for a defect of this program. Not to find a mesh, or to be stopped, is no error.
 pub fn fill(problem: &Problem, options: &FillOptions, ctx: &Context<'_>) -> Result<FillResult, FillError> {
     check_fillable(&problem.surface)?;
     if let Some(scaled) = Scaled::of(problem, options) {

@@ -120,7 +120,7 @@ impl FillOptions {
         Self { prefer, ..self }
     }
 
-    /// Most hexes a mesh may have.
+    /// Most hexes a mesh may have; larger ones are not returned.
     #[must_use]
     pub fn with_max_hexes(self, max_hexes: u32) -> Self {
         Self { max_hexes, ..self }
@@ -132,7 +132,8 @@ impl FillOptions {
         Self { count: count.max(1), ..self }
     }
 
-    /// Boundary layers under the whole surface, cut once the mesh has positions.
+    /// Boundary layers under the whole surface, cut once the mesh has positions; heights are in the unit of the surface. Only for
+    /// [`fill_placed`](crate::fill_placed()): a mesh whose surface layer cannot be cut is refused with [`FillError::NotForStrategy`](crate::FillError::NotForStrategy).
     #[must_use]
     pub fn with_layers(self, layers: BoundaryLayers) -> Self {
         Self { layers: Some(layers), ..self }
@@ -157,7 +158,7 @@ impl FillOptions {
         Self { simplify: Some(simplify), ..self }
     }
 
-    /// The atlas to use.
+    /// The atlas to use in place of the embedded one.
     #[must_use]
     pub fn with_atlas(self, atlas: Arc<Atlas>) -> Self {
         Self { atlas: Some(atlas), ..self }

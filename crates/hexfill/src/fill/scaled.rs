@@ -48,6 +48,8 @@ impl<'a> Scaled<'a> {
     /// Positions of all vertices, those of the surface bit for bit.
     pub(crate) fn restore_points(&self, points: &mut [Vector]) {
         let (surface, interior) = points.split_at_mut(self.boundary.len());
+        // Powers of two are exact, but for numbers at the edge of the range: the boundary comes back from the
+        // original and not by arithmetic.
         surface.copy_from_slice(self.boundary);
         interior.iter_mut().flatten().for_each(|x| *x = times(*x, self.exponent));
     }

@@ -80,7 +80,8 @@ pub struct ChordInfo {
 /// Larger surfaces are not searched for symmetries, nor printed as a signature.
 pub(crate) const SIGNATURE_LIMIT: usize = 20_000;
 
-/// Describes a surface; `points` are the positions of its vertices.
+/// Describes a surface; `points` are the positions of its vertices, one for each id, in any unit: without them, or with too few, whether a mesh exists may
+/// remain unknown. Never fails.
 ///
 /// ```
 /// use hexfill::{Problem, describe_surface};

@@ -87,6 +87,7 @@ pub(crate) fn place_best(
         }
         let ways = placements(&filled.mesh, &problem.surface, boundary);
         let n = ways.len();
+        // The ways with the best bounds; a bound below what is certified already ends the search.
         all.extend(ways.into_iter().take(MOST_WAYS).map(|way| {
             let turned = Filled { mesh: way.mesh, start: None, ..filled.clone() };
             (way.upper_bound, n, turned)

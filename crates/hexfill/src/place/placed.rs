@@ -7,6 +7,32 @@ use hexfill_io::MeshData;
 use hexfill_mesh::HexMesh;
 
 /// Positions of all vertices of a mesh with the judge's verdict on every hex.
+///
+/// An array of quads is filled, and its worst cells are printed:
+///
+/// ```
+/// use hexfill::{Context, FillOptions, PlaceOptions, Problem, fill_placed, mesh::QuadSurface};
+///
+/// // Two boxes on each other, the upper lid shifted and turned up on one side.
+/// let floors = [[0.0, 0.0], [1.0, 0.4], [2.0, 1.3]]; // height, and shift of the corners
+/// let points = floors.iter().flat_map(|&[z, x]| {
+///     [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|[a, b]| [a + x, b, z + 0.2 * z * b])
+/// });
+/// let mut quads = vec![[0, 3, 2, 1], [8, 9, 10, 11]];
+/// quads.extend((0..8).map(|v| [v, v / 4 * 4 + (v + 1) % 4, v / 4 * 4 + (v + 1) % 4 + 4, v + 4]));
+///
+/// let problem = Problem::new("two boxes", QuadSurface::try_new(12, &quads)?, points.collect())?;
+/// let made = fill_placed(&problem, &FillOptions::default(), &PlaceOptions::default(), &Context::default())?;
+/// let (filled, placed) = made.meshes.first().expect("a sphere with an even number of quads");
+/// let placed = placed.as_ref().expect("the surface has positions");
+/// let mut cells: Vec<_> = placed.cells().iter().enumerate().collect();
+/// cells.sort_by(|a, b| a.1.certified_lower.total_cmp(&b.1.certified_lower));
+/// for (hex, cell) in cells.iter().take(3) {
+///     println!("h{hex} {:?}: {:.3}", filled.mesh().hexes()[*hex], cell.certified_lower);
+/// }
+/// assert!(placed.is_certified() && placed.worst() == cells[0].1.certified_lower);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Placed {
     pub(crate) points: Vec<[f64; 3]>,
@@ -48,7 +74,7 @@ impl Placed {
         Self { points, cells, embedding, refused: None, ways: 1 }
     }
 
-    /// Position per vertex; the surface's own come first, bit for bit.
+    /// Position per vertex, in the unit of the surface; the surface's own come first, bit for bit.
     pub fn points(&self) -> &[[f64; 3]] {
         &self.points
     }
@@ -91,7 +117,7 @@ impl Placed {
         !self.cells.is_empty() && self.cells.iter().all(|c| c.valid)
     }
 
-    /// The least certified scaled Jacobian; -1 if a hex is not certified.
+    /// The least certified scaled Jacobian of any point of any hex, up to 1 (a cube); -1 if a hex is not certified or nothing was judged.
     pub fn worst(&self) -> f64 {
         self.cells.iter().map(|c| c.certified_lower).fold(f64::INFINITY, f64::min)
     }
@@ -135,12 +161,13 @@ impl Placed {
         }
     }
 
-    /// Certified scaled Jacobian per hex, for colours.
+    /// Scaled Jacobian per hex, for colours: the certified one, or of a hex without certificate the least at its corners, at most 0. Empty if nothing was
+    /// judged.
     pub fn scaled_jacobians(&self) -> Vec<f64> {
         self.cells.iter().map(|c| if c.valid { c.certified_lower } else { c.corner_scaled_jacobian.min(0.0) }).collect()
     }
 
-    /// Gives file data two numbers per hex: whether it is certified (1 or 0), and its scaled Jacobian. Those of an earlier
+    /// Gives file data of this mesh two numbers per hex, `certified_positive` (1 or 0) and `scaled_jacobian`. Those of an earlier
     /// judgement are replaced.
     pub fn flag(&self, data: &mut MeshData) {
         let certified = self.cells.iter().map(|c| f64::from(u8::from(c.valid))).collect();

@@ -39,6 +39,7 @@ pub(crate) fn placements(mesh: &HexMesh, surface: &QuadSurface, points: &[[f64; 
     }
     let turns = surface_automorphisms(surface);
     let congruences: Vec<&SurfaceAutomorphism> = turns.iter().filter(|t| is_congruence(t, points)).collect();
+    // Every symmetry of the surface is one of its positions, too: all ways to lie on it are congruent.
     if congruences.len() == turns.len() {
         return as_it_is();
     }
@@ -53,6 +54,8 @@ pub(crate) fn placements(mesh: &HexMesh, surface: &QuadSurface, points: &[[f64; 
         for congruence in &congruences {
             for symmetry in &symmetries {
                 let image = |v: usize| congruence.vertices[turn.vertices[symmetry.vertices[v].index()].index()];
+                // Ways that differ by a symmetry of the mesh or a congruence of the points have the same embeddings:
+                // one of each double coset is tried.
                 seen.insert((0..n).map(image).collect());
             }
         }

@@ -130,7 +130,7 @@ pub fn names() -> impl Iterator<Item = String> {
     ENTRIES.iter().map(|e| format!(":{}", e.name))
 }
 
-/// The entry called `name` (without the colon).
+/// The entry called `name` (without the colon); `None` if there is none.
 pub fn find(name: &str) -> Option<&'static Entry> {
     ENTRIES.iter().find(|e| e.name == name)
 }

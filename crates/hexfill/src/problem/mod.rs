@@ -120,7 +120,7 @@ impl Problem {
         Ok(problem)
     }
 
-    /// A surface without positions.
+    /// A surface without positions; it faces as it does.
     pub fn from_surface(name: &str, surface: QuadSurface) -> Self {
         Self {
             name: name.to_owned(),
@@ -135,10 +135,12 @@ impl Problem {
         }
     }
 
-    /// A problem from what a file holds: its faces, which must be quads and close up.
+    /// A problem from what a file holds: its faces, which must be quads and close up. Indices count from 0; quads may list their corners in either sense
+    /// and are turned to agree, and outward where there are positions. Tags and data stay with their quads and points.
     ///
     /// # Errors
-    /// [`ProblemError`].
+    /// [`ProblemError::NoFaces`], [`ProblemError::Surface`] (with the offenders), [`ProblemError::Seams`] if welding would close it,
+    /// [`ProblemError::NotFinite`], [`ProblemError::SparseIds`], [`ProblemError::HigherOrder`].
     pub fn from_data(name: &str, data: &MeshData) -> Result<Self, ProblemError> {
         let surface_error = |source| ProblemError::Surface { name: name.to_owned(), source };
         if !data.middles.is_empty() {

@@ -67,7 +67,7 @@ impl FilledRegions {
 /// ```
 ///
 /// # Errors
-/// [`RegionsError`].
+/// [`RegionsError::Fill`] with the region that has no mesh or could not be tried; [`RegionsError::DoNotFit`] if hexes on two sides of a wall still share too much.
 pub fn fill_regions(
     data: &MeshData,
     regions: &[Region],
@@ -76,11 +76,15 @@ pub fn fill_regions(
     ctx: &Context<'_>,
 ) -> Result<FilledRegions, RegionsError> {
     let filled = fill_once(data, regions, options, how, ctx)?;
+    // Each region is proper by itself. What may clash are hexes of two regions at one wall, which share its vertices;
+    // no region knows of the other.
     let Err(rules) = fits(&filled.data) else { return Ok(filled) };
     if ctx.stop().is_some() {
         return Err(RegionsError::DoNotFit { rules });
     }
     let mut pillowed = options.clone();
+    // Behind a pillow every wall quad has a hex of its own, so two regions share a quad, an edge or a vertex of the
+    // wall and no more.
     pillowed.shell.pillows = vec![1];
     pillowed.strategy = Strategy::Shell;
     let filled = fill_once(data, regions, &pillowed, how, ctx)?;
@@ -142,7 +146,7 @@ fn fill_once(
 /// Levels 1 and 2 of the judge on the whole; the rules that fail.
 fn fits(data: &MeshData) -> Result<(), String> {
     let judged = Judged::connectivity(data.points.len(), &data.hexes);
-    let options = hexfill_check::Options::default().up_to(Level::L2).betti(false).quality(false);
+    let options = hexfill_check::Options::default().with_up_to(Level::L2).with_betti(false).with_quality(false);
     let report = judge(&judged, &options, &Context::default());
     if report.passed(Level::L2) { Ok(()) } else { Err(report.broken_rules().join(", ")) }
 }

@@ -37,7 +37,8 @@ pub fn has_regions(data: &MeshData, surface: &Result<Problem, ProblemError>) -> 
 /// positions.
 ///
 /// # Errors
-/// [`RegionsError`].
+/// [`RegionsError::Problem`] if the faces of a region are no closed quad surface; [`RegionsError::Open`], [`RegionsError::Baffle`] and
+/// [`RegionsError::InsideOut`] with the faces that are at fault.
 pub fn regions(name: &str, data: &MeshData) -> Result<Vec<Region>, RegionsError> {
     let (walls, occupied) = walls(data);
     if !data.has_coordinates || walls.is_empty() {
@@ -73,6 +74,7 @@ pub fn regions(name: &str, data: &MeshData) -> Result<Vec<Region>, RegionsError>
     let mut found = Vec::new();
     for parts in parts.into_values() {
         let sides: Vec<u32> = parts.iter().flat_map(|&i| shells[i].iter().copied()).collect();
+        // Hexes of the file lie there: nothing is to be filled.
         if sides.iter().any(|&s| occupied[s as usize]) {
             continue;
         }

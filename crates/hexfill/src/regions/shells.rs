@@ -88,6 +88,7 @@ pub(super) fn shells(name: &str, walls: &[[u32; 4]], points: &[Vector]) -> Resul
         let of = edges.iter().filter(|(_, quads)| is_one(quads.len()));
         of.map(|(&[a, b], _)| Edge(VertexId(a), VertexId(b))).collect()
     };
+    // A wall that ends in space bounds nothing: the two sides of it are one, and so would be the regions.
     let open = with(|n| n < 2);
     if !open.is_empty() {
         return Err(RegionsError::Open { name: name.to_owned(), edges: open, shared: with(|n| n > 2) });
@@ -97,6 +98,8 @@ pub(super) fn shells(name: &str, walls: &[[u32; 4]], points: &[Vector]) -> Resul
         let mut round: Vec<(f64, u32, bool)> =
             quads.iter().map(|&(q, along)| (angle(walls[q as usize], [a, b], points), q, along)).collect();
         round.sort_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
+        // Between two neighbours in the order of their angles there is nothing: the sides that face each other there
+        // belong to one region.
         for (i, &(_, p, along)) in round.iter().enumerate() {
             let (_, q, next_along) = round[(i + 1) % round.len()];
             // A quad along the edge has growing angles before it.

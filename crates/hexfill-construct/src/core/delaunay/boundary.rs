@@ -53,6 +53,8 @@ impl Solid {
                 if let Some(reason) = ctx.stop() {
                     return Err(reason);
                 }
+                // Last of all with no floor: a needle is better than a point of our own on a surface that is to stay
+                // as it is.
                 if !self.draw_along_boundary(v, FLOOR) && !self.move_inward(v) && !self.draw_along_boundary(v, 0.0) {
                     kept.push(v);
                 }
@@ -104,6 +106,7 @@ impl Solid {
         let changes: Vec<usize> = (0..n).filter(|&k| cycle[k].1 != cycle[(k + n - 1) % n].1).collect();
         match *changes.as_slice() {
             [] => Some(vec![(cycle.iter().map(|c| c.0).collect(), cycle[0].1)]),
+            // On an edge of the surface: a polygon on either side, each with the two neighbours along the edge.
             [first, second] => {
                 cycle.rotate_left(first);
                 let k = second - first;
@@ -127,6 +130,8 @@ impl Solid {
         };
         let mut best: Option<(f64, VertexId)> = None;
         for u in candidates {
+            // Boundary triangles must face as the surface does, or the boundary folds back in its plane and the tets
+            // overlap though all are positive.
             let fits =
                 polygons.iter().all(|(polygon, tag)| fan(polygon, u).iter().all(|t| self.share(*t, *tag) > FLAT));
             if !fits {
@@ -216,6 +221,7 @@ impl Solid {
         let mut best = (0.0, here, 0.0);
         for direction in [unit_or_zero(inward), unit_or_zero(sub(mean, here))] {
             let mut step = reach;
+            // Every length is tried and not the first that works: the best of them is where the climb starts.
             for _ in 0..30 {
                 let p = std::array::from_fn(|c| here[c] + step * direction[c]);
                 if let Some(q) = self.least_above(best.0, &mut trial, v, p) {

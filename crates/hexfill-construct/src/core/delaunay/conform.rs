@@ -11,6 +11,7 @@
 use super::mesh::{Delaunay, orient};
 use crate::core::complex::{OUTWARD, TET_EDGES};
 use crate::ids::TetId;
+use crate::missing::MissingInterior;
 use hexfill_geometry::{Vector, bounding_box, cross, dot, norm, sub};
 use hexfill_mesh::{Buckets, Context, IdVec, StopReason, VertexId, id_type};
 
@@ -41,14 +42,14 @@ pub(crate) enum Origin {
 /// Why there is no answer.
 #[derive(Debug)]
 pub(crate) enum Failure {
-    /// In words.
-    Reason(String),
+    /// The surface is at fault.
+    Reason(MissingInterior),
     /// Told to stop.
     Stopped(StopReason),
 }
 
-impl From<String> for Failure {
-    fn from(reason: String) -> Self {
+impl From<MissingInterior> for Failure {
+    fn from(reason: MissingInterior) -> Self {
         Self::Reason(reason)
     }
 }
@@ -64,8 +65,6 @@ pub(crate) struct SurfaceEdge {
 /// Rounds of points for triangles that are not there yet. Ordinary surfaces take a few, which add most of their points; where two triangles
 /// all but lie in each other, each round adds two points, and every one looks at all tets.
 const ROUNDS: u64 = 200;
-
-const TOO_MANY: &str = "the surface meets itself or nearly does: recovering it took too many points";
 
 /// The surface and the tetrahedralisation that is to conform to it.
 pub(crate) struct Conforming<'a> {
@@ -103,9 +102,11 @@ impl<'a> Conforming<'a> {
         budget: usize,
     ) -> Result<Self, Failure> {
         let mut dt = Delaunay::new(points);
+        // Any order gives the same tets but for ties, and this one is fixed; along the curve the walk to the next
+        // point is short.
         for v in morton_order(points) {
             let placed = dt.insert(v);
-            placed.map_err(|w| format!("vertices {} and {} are at the same place", v.min(w).0, v.max(w).0))?;
+            placed.map_err(|w| MissingInterior::SamePlace { vertices: [v.min(w), v.max(w)] })?;
         }
         let mut sides: Vec<([VertexId; 2], TriangleId, u8)> = Vec::with_capacity(3 * triangles.len());
         for (t, tri) in triangles.enumerate() {
@@ -121,10 +122,10 @@ impl<'a> Conforming<'a> {
         let mut triangle_edges = IdVec::filled([SideId::NONE; 3], triangles.len());
         for pair in sides.chunks(2) {
             let &[(ends, t, i), (other, u, j)] = pair else {
-                return Err("a triangle has a free side".to_owned().into());
+                return Err(MissingInterior::FreeSide.into());
             };
             if ends != other {
-                return Err(format!("edge {:?} is not in two triangles", ends.map(|v| v.0)).into());
+                return Err(MissingInterior::OpenEdge { vertices: ends }.into());
             }
             let edge = edges.push(SurfaceEdge { ends, triangles: [t, u], chain: ends.to_vec() });
             triangle_edges[t][usize::from(i)] = edge;
@@ -159,7 +160,7 @@ impl<'a> Conforming<'a> {
                 self.pierce(t)?;
             }
         }
-        Err(TOO_MANY.to_owned().into())
+        Err(MissingInterior::TooManyPoints.into())
     }
 
     /// Splits edges until all pieces are edges of tets.
@@ -196,6 +197,8 @@ impl<'a> Conforming<'a> {
         let along = sub(self.at(b), self.at(a));
         let length = norm(along);
         // Between a third and two thirds of the length.
+        // Powers of two: pieces that end at a common corner are cut at the same distances from it, so the points of
+        // one edge stop to encroach on the other (concentric shells, Ruppert 1995).
         let shell = (2.0 * length / 3.0).log2().floor().exp2() / length;
         let share = match (ends.contains(&a), ends.contains(&b)) {
             (true, false) => shell,
@@ -209,11 +212,13 @@ impl<'a> Conforming<'a> {
     }
 
     fn add(&mut self, p: Vector, near: VertexId, origin: Origin) -> Result<VertexId, Failure> {
+        // On a surface that meets itself two of its triangles pierce each other for ever, each point making new ones;
+        // the budget is what ends it.
         if self.budget == 0 {
-            return Err(TOO_MANY.to_owned().into());
+            return Err(MissingInterior::TooManyPoints.into());
         }
         self.budget -= 1;
-        let v = self.dt.add(p, near).map_err(|_| "the surface meets itself: two of its points coincide".to_owned())?;
+        let v = self.dt.add(p, near).map_err(|_| MissingInterior::PointsCoincide)?;
         self.origin.push(origin);
         Ok(v)
     }
@@ -285,6 +290,8 @@ impl<'a> Conforming<'a> {
                 border.extend(self.edges[e].chain.windows(2).map(|w| [w[0].min(w[1]), w[0].max(w[1])]));
             }
             border.sort_unstable();
+            // Corners of these faces lie in one plane up to rounding, so faces that have the border, and no free side
+            // besides, cover the triangle: nothing need be triangulated in two dimensions.
             let complete = border.iter().all(|s| sides.binary_search(s).is_ok());
             let closed = sides.chunk_by(|x, y| x == y).all(|c| c.len() > 1 || border.binary_search(&c[0]).is_ok());
             if !complete || !closed {
@@ -346,6 +353,7 @@ impl<'a> Conforming<'a> {
                 if members.binary_search(&x).is_ok() || members.binary_search(&y).is_ok() {
                     continue;
                 }
+                // By vertex id: the same edge seen from two tets must give the same bits.
                 let [p, q] = [self.at(x), self.at(y)];
                 let Some((above, below)) = crossing([p, q], corners) else { continue };
                 for k in (0..4).filter(|&k| k != i && k != j) {
@@ -354,6 +362,8 @@ impl<'a> Conforming<'a> {
                         queue.push(other);
                     }
                 }
+                // The signs of `above` and `below` are exact, so whether there is a point is certain; where it lies
+                // is rounded, and that is enough.
                 let share = above.abs() / (above.abs() + below.abs());
                 let at: Vector = std::array::from_fn(|k| p[k] + share * (q[k] - p[k]));
                 let square = |m: &VertexId| {
@@ -429,10 +439,10 @@ impl<'a> Conforming<'a> {
             if regions[r].is_flat {
                 continue;
             }
+            // A region on the inner side of one face and the outer side of another, or inside and infinite: no
+            // closed, embedded, outward surface has one.
             if behind > 0 && (before > 0 || regions[r].is_far) {
-                return Err("the surface meets itself or faces inward: its sides contradict each other"
-                    .to_owned()
-                    .into());
+                return Err(MissingInterior::SidesContradict.into());
             }
             keep[r] = behind > 0;
         }

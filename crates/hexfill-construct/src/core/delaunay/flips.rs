@@ -75,6 +75,8 @@ impl Solid {
         let bound = |old: &[TetId], best: &Option<(f64, Exchange)>| {
             (self.least_of(old) * 1.0001).max(best.as_ref().map_or(0.0, |b| b.0))
         };
+        // The union of the tets round an inner edge is a ball whose surface does not change: any positive
+        // triangulation of the ring with both ends fills the same place.
         for (old, ring) in TET_EDGES.iter().filter_map(|&[i, j]| self.ring(tet[i], tet[j])) {
             if let Some((after, new)) = self.triangulate(&ring, bound(&old, &best)) {
                 best = Some((after, (old, new)));
@@ -185,6 +187,7 @@ impl Solid {
             }
         }
         let Some((worst, at, (old, new))) = best else { return };
+        // A point more is a cost of its own, in hexes; it has to pay.
         if worst > 2.0 * self.quality(tet) {
             self.points.push(at);
             self.tets_at.push(Vec::new());

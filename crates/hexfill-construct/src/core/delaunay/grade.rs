@@ -92,6 +92,7 @@ impl Conforming<'_> {
         }
         let (mut added, mut passed) = (0u64, 0u64);
         while let Some(Entry { tet, place, .. }) = heap.pop() {
+            // Entries are not taken out when a tet goes: its place may hold another one by now.
             if self.dt.tets[place] != tet {
                 continue;
             }
@@ -108,6 +109,8 @@ impl Conforming<'_> {
                 continue;
             }
             let from = self.dt.locate(centre, place);
+            // Ruppert's remedy would be to split the face in the way. Not here: points on the boundary have to be
+            // taken off again, and that is the dear part.
             if !kept[from] || !self.leaves_surface(centre, from) {
                 passed += 1;
                 continue;
@@ -117,6 +120,7 @@ impl Conforming<'_> {
             self.budget -= 1;
             added += 1;
             kept.resize(self.dt.tets.len(), false);
+            // The hole did not pass a face of the surface, so all that fills it is inside as the tets before were.
             for t in self.dt.star(v) {
                 kept[t] = true;
                 heap.extend(self.entry(t));

@@ -42,6 +42,8 @@ impl Delaunay {
     /// The huge tet alone: its corners get the first ids that are not those of `points`, which are not inserted yet.
     pub(super) fn new(points: &[Vector]) -> Self {
         let (low, high, size) = bounding_box(points);
+        // Not infinitely far: hull tets of the points may be missing where the hull is nearly flat. That does no
+        // harm, only what lies inside the surface is kept.
         let far = 4096.0 * size;
         let centre: Vector = std::array::from_fn(|c| low[c] + (high[c] - low[c]) / 2.0);
         let corner = |s: [f64; 3]| std::array::from_fn(|c| centre[c] + far * s[c]);
@@ -112,6 +114,8 @@ impl Delaunay {
     fn insert_from(&mut self, v: VertexId, from: TetId) -> Result<(), VertexId> {
         let p = self.at(v);
         let first = self.locate(p, from);
+        // A second vertex at the place of a first is on the spheres round it and inside none: a face of the hole
+        // through it would make a tet without volume.
         if let Some(&same) = self.tets[first].iter().find(|&&w| self.at(w) == p) {
             return Err(same);
         }

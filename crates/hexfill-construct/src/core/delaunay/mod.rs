@@ -23,9 +23,10 @@ use super::maker::{Core, InteriorTets};
 use super::request::TetRequest;
 use super::used::Used;
 use crate::error::ConstructError;
+use crate::missing::MissingInterior;
 use conform::{Conforming, Failure, TriangleId};
 use hexfill_geometry::{cross, dot, norm, sub};
-use hexfill_mesh::{Context, IdVec, VertexId};
+use hexfill_mesh::{Context, IdVec, QuadId, VertexId};
 use solid::Solid;
 
 /// Tetrahedra of the interior by conforming Delaunay refinement. See the module page.
@@ -43,9 +44,6 @@ impl Default for DelaunayTets {
     }
 }
 
-/// What to do instead.
-const ADVICE: &str = "give tetrahedra, or install tetgen";
-
 impl InteriorTets for DelaunayTets {
     fn core(&self) -> Core {
         Core::Delaunay
@@ -53,10 +51,10 @@ impl InteriorTets for DelaunayTets {
 
     fn fill(&self, request: &TetRequest<'_>, ctx: &Context<'_>) -> Result<TetComplex, ConstructError> {
         let Some(points) = request.points else {
-            return Err(request.interior_needed(format!("Delaunay tetrahedra need positions; {ADVICE}")));
+            return Err(request.interior_needed(MissingInterior::NoPositionsForDelaunay));
         };
         let made = self.run(request, points, ctx).map_err(|failure| match failure {
-            Failure::Reason(reason) => request.interior_needed(format!("{reason}; {ADVICE}")),
+            Failure::Reason(reason) => request.interior_needed(reason),
             Failure::Stopped(reason) => ConstructError::Stopped(reason),
         })?;
         // Whatever went before: this decides.
@@ -71,13 +69,12 @@ pub(crate) const GRADED_TRIANGLES: usize = 40_000;
 impl DelaunayTets {
     fn run(&self, request: &TetRequest<'_>, points: &[[f64; 3]], ctx: &Context<'_>) -> Result<TetComplex, Failure> {
         if request.triangles.is_empty() || points.len() != request.n_vertices {
-            return Err("one position a vertex is needed".to_owned().into());
+            return Err(MissingInterior::PositionsCount.into());
         }
         let used = Used::of(request);
         let own = used.points(points);
         if let Some(v) = own.iter().position(|p| p.iter().any(|x| !x.is_finite() || x.abs() > 1e60)) {
-            let v = used.vertices[v].0;
-            return Err(format!("the position of vertex {v} is not a number or too large").into());
+            return Err(MissingInterior::PositionNotFinite { vertex: used.vertices[v] }.into());
         }
         let flat = |t: &[VertexId; 3]| {
             let [a, b, c] = t.map(|v| points[v.index()]);
@@ -86,7 +83,7 @@ impl DelaunayTets {
             norm(cross(sides[0], sides[1])) <= 1e-12 * longest
         };
         if let Some(t) = request.triangles.iter().position(flat) {
-            return Err(format!("half of quad {} has no area, so no tetrahedron stands on it", t / 2).into());
+            return Err(MissingInterior::NoArea { quad: QuadId::new(t / 2) }.into());
         }
         let triangles: IdVec<TriangleId, [VertexId; 3]> = used.triangles.clone().into();
         let budget = self.points_per_triangle.saturating_mul(triangles.len());
@@ -96,8 +93,8 @@ impl DelaunayTets {
             conforming.grade(ctx)?;
         }
         let mut solid = Solid::new(conforming.inside()?, &triangles, own.len());
-        if let Err(left) = solid.clear_boundary(ctx).map_err(Failure::Stopped)? {
-            return Err(format!("{left} points could not be taken off the boundary").into());
+        if let Err(given) = solid.clear_boundary(ctx).map_err(Failure::Stopped)? {
+            return Err(MissingInterior::PointsOnBoundary { given }.into());
         }
         solid.remove_points(ctx).map_err(Failure::Stopped)?;
         let (found, tets, least) = solid.finish();

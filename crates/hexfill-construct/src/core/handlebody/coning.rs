@@ -76,6 +76,7 @@ impl Names {
     fn new(cutting: &Cutting) -> Self {
         let s = &cutting.s;
         // Edges by smaller dart, merged where fans are glued: side 0 with side 0, the others crosswise.
+        // Names, not vertex pairs: an apex may have several edges to one vertex, so an edge is not told by its ends.
         let mut same_edge: Forest<DartId> = Forest::new(s.len());
         for d in s.ids() {
             same_edge.union(d, s.twin[d]);

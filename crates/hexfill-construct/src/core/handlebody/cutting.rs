@@ -94,6 +94,8 @@ impl Cutting {
             for (e, v) in [(ba, on_right[i]), (bc, on_right[j]), (ca, right_centre)] {
                 self.s.origin[e] = v;
             }
+            // The left fan closes the side that keeps the old vertices, the right fan the side that got copies; as
+            // triangles of tets the two are one disk.
             self.s.join(d, ab);
             self.s.join(t, ba);
             // The spoke to b is that of the next fan to its a; right the other way round.
@@ -118,6 +120,7 @@ impl Cutting {
         let mut copies = Vec::with_capacity(n);
         let mut turned: Vec<(DartId, VertexId)> = Vec::new();
         for i in 0..n {
+            // A copy is a new vertex of the surface and the old one of the tets: the apex may see it twice.
             let copy = self.vertex.push(self.vertex[self.s.origin[path[i]]]);
             copies.push(copy);
             let (d, back) = (path[i], self.s.twin[path[(i + n - 1) % n]]);

@@ -22,6 +22,7 @@ pub(super) fn shortest_disk(cutting: &Cutting, ctx: &Context<'_>) -> Result<Opti
     let bits = classes(s);
     let first = s.vertex_darts();
     let usable: Vec<VertexId> = first.enumerate().filter(|(_, d)| d.is_some()).map(|(v, _)| v).collect();
+    // Not from every vertex: a loop a little longer than the shortest cuts as well, it only makes larger fans.
     let n_roots = (SEARCH / (s.len() * (1 + cutting.inside.width))).clamp(4, usable.len());
     let mut search = Search::new(cutting, &bits, &first);
     let mut best: Option<Vec<DartId>> = None;
@@ -97,6 +98,7 @@ impl<'a> Search<'a> {
         while at < self.order.len() {
             let v = self.order[at];
             at += 1;
+            // Any loop closed from here on has at least this many darts: two tree paths of that depth and a dart.
             if 2 * self.depth[v] as usize + 1 >= limit {
                 return None;
             }
@@ -112,6 +114,8 @@ impl<'a> Search<'a> {
                         self.sum[to + j] = self.sum[from + j] + value;
                     }
                     self.order.push(t);
+                // The classes of path, dart and path back add up to the loop's: not zero on the surface, so it does
+                // not separate; zero inside in integers, so it is null-homologous there and may bound a disk.
                 } else if self.bit[v] ^ self.bits[d] != self.bit[t]
                     && (0..w).all(|j| self.sum[from + j] + values[j] == self.sum[to + j])
                 {
@@ -170,6 +174,7 @@ fn disk_in_cover(
                 if !known.insert((t, bit, sum.clone())) {
                     continue;
                 }
+                // Null-homologous is necessary for a disk and not sufficient: a commutator is null as well.
                 let closes = t == root && bit != 0 && sum.iter().all(|&x| x == 0);
                 states.push(State { vertex: t, bit, sum, from: Some((at, d)) });
                 if closes && let Some(path) = simple_path(s, &states) {

@@ -29,6 +29,7 @@ use super::complex::TetComplex;
 use super::maker::{Core, InteriorTets};
 use super::request::TetRequest;
 use crate::error::ConstructError;
+use crate::missing::MissingInterior;
 use crate::surface::linking::{Linking, LinkingError, linking};
 use crate::surface::nesting::solids;
 use crate::surface::polygons::{Darts, GonId};
@@ -52,11 +53,9 @@ impl InteriorTets for HandlebodyTets {
     }
 
     fn fill(&self, request: &TetRequest<'_>, ctx: &Context<'_>) -> Result<TetComplex, ConstructError> {
-        let needed = |reason: String| request.interior_needed(reason);
+        let needed = |reason| request.interior_needed(reason);
         let s = Darts::of_triangles(request.n_vertices, request.triangles);
-        let points = request.points.ok_or_else(|| {
-            needed("without positions nothing tells which loops bound inside; give positions or tetrahedra".into())
-        })?;
+        let points = request.points.ok_or_else(|| needed(MissingInterior::NoPositions))?;
         let (component, n_components) = request.components();
         let solids = match n_components {
             1 => vec![vec![0]],
@@ -64,12 +63,14 @@ impl InteriorTets for HandlebodyTets {
         };
         let (genus, _) = request.shape();
         if genus > MOST_HANDLES {
-            return Err(needed("more than 32 handles: give tetrahedra of the interior".into()));
+            return Err(needed(MissingInterior::TooManyHandles));
         }
         let l = linking(&s, points, ctx).map_err(|e| match e {
-            LinkingError::Undecided(reason) => needed(reason.into()),
+            LinkingError::Undecided(reason) => needed(reason),
             LinkingError::Stopped(reason) => ConstructError::Stopped(reason),
         })?;
+        // Numbers with loops pushed outward are coordinates of a loop's class inside, so that from here on nothing
+        // asks the positions what bounds.
         let inside = homology(&s, &l);
         let mut cutting = Cutting::new(s, inside);
         for solid in &solids {
@@ -88,12 +89,7 @@ impl InteriorTets for HandlebodyTets {
                 return Err(ConstructError::Stopped(reason));
             }
             ctx.report("disks", handle, Some(genus), String::new);
-            let path = shortest_disk(&cutting, ctx)?.ok_or_else(|| {
-                needed(
-                    "no loop was found that could bound a disk inside: the interior is no handlebody; give tetrahedra"
-                        .into(),
-                )
-            })?;
+            let path = shortest_disk(&cutting, ctx)?.ok_or_else(|| needed(MissingInterior::NoHandlebody))?;
             let centre = VertexId::new(points.len());
             points.push(cutting.mean(&path, &points));
             cutting.cut(&path, centre);
