@@ -4,10 +4,10 @@ use crate::best::{PlaceOptions, PlacedFill, fill_placed};
 use crate::fill::filled::{ENGINE, LAYER};
 use crate::fill::maker::Maker;
 use crate::fill::options::{FillOptions, Strategy};
-use crate::place::placed::Placed;
+use crate::place::placed::{Placed, shown};
 use crate::regions::Region;
 use crate::regions::error::RegionsError;
-use hexfill_check::{Judged, Level, cell_quality, judge};
+use hexfill_check::{CellQuality, Judged, Level, cell_quality, judge};
 use hexfill_io::MeshData;
 use hexfill_mesh::{Context, StopReason};
 
@@ -103,7 +103,12 @@ fn fill_once(
     let (mut fills, mut stop) = (Vec::new(), StopReason::Finished);
     let (mut engines, mut layers) =
         (vec![f64::from(Maker::Given.number()); data.hexes.len()], vec![0.0; data.hexes.len()]);
-    let (mut certified, mut quality) = (vec![f64::NAN; data.hexes.len()], vec![f64::NAN; data.hexes.len()]);
+    let given = Judged::connectivity(data.points.len(), &data.hexes).with_points(&data.points);
+    let given = cell_quality(&given);
+    let given_invalid = given.iter().filter(|c| c.as_ref().is_none_or(|c| !c.valid)).count();
+    let is_certified = |c: &Option<CellQuality>| c.as_ref().map_or(0.0, |c| f64::from(u8::from(c.valid)));
+    let mut certified: Vec<f64> = given.iter().map(is_certified).collect();
+    let mut quality: Vec<f64> = given.iter().map(|c| c.as_ref().map_or(f64::NAN, shown)).collect();
     for (i, region) in regions.iter().enumerate() {
         let fill = fill_placed(&region.problem, options, how, ctx)
             .map_err(|source| RegionsError::Fill { region: i + 1, source })?;
@@ -143,8 +148,6 @@ fn fill_once(
     }
     all.hex_data.push((ENGINE.to_owned(), engines));
     all.hex_data.push((LAYER.to_owned(), layers));
-    let given = Judged::connectivity(data.points.len(), &data.hexes).with_points(&data.points);
-    let given_invalid = cell_quality(&given).iter().filter(|c| c.as_ref().is_none_or(|c| !c.valid)).count();
     Ok(FilledRegions { data: all, fills, given_invalid, stop })
 }
 
