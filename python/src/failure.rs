@@ -151,7 +151,9 @@ impl From<ProblemError> for Failure {
         let message = error.to_string();
         match error {
             ProblemError::Read(error) => error.into(),
-            ProblemError::Surface { source, .. } => Self { message, ..source.into() },
+            ProblemError::Surface { source, .. } | ProblemError::Seams { source, .. } => {
+                Self { message, ..source.into() }
+            }
             ProblemError::NotFinite { points, .. } => {
                 Self::new("SurfaceError", message).vertices(&points.first).count(&points)
             }

@@ -95,7 +95,7 @@ def seams():
 
 def test_seams_are_welded():
     points, quads = seams()
-    with pytest.raises(hexfill.InputError, match=r"\(weld=0(\.0)?\)"):
+    with pytest.raises(hexfill.SurfaceError, match=r"\(weld=0(\.0)?\)"):
         hexfill.fill(points, quads)
     mesh = hexfill.fill(points, quads, weld=0)
     assert mesh.n_hexes == 8 and len(mesh.points) == 27
