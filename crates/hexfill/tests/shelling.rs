@@ -1,6 +1,6 @@
 //! Shelling from the surface to certified coordinates: what users of real surfaces get.
 
-use hexfill::{BoundaryLayers, Context, FillOptions, PlaceOptions, Problem, Route, Strategy, fill_placed};
+use hexfill::{Attempt, BoundaryLayers, Context, FillOptions, PlaceOptions, Problem, Route, Strategy, fill_placed};
 
 /// The boundary of filled cells with its positions.
 fn voxels(size: [usize; 3], filled: impl Fn([usize; 3]) -> bool) -> Problem {
@@ -54,6 +54,19 @@ fn real_surfaces_get_a_few_good_hexes_a_quad_for_any_number_of_threads() {
         }
         assert!(meshes[0] == meshes[1], "{name}: the number of threads changes the mesh");
     }
+}
+
+#[test]
+fn where_no_sweep_has_valid_positions_hexes_are_laid_one_by_one() {
+    let file = format!("{}/../../corpus/surfaces/radial_12.obj", env!("CARGO_MANIFEST_DIR"));
+    let problem = Problem::load(&file, None).unwrap();
+    let made = fill_placed(&problem, &FillOptions::default(), &PlaceOptions::default(), &Context::default()).unwrap();
+    let (filled, placed) = &made.meshes[0];
+    let placed = placed.as_ref().unwrap();
+    assert_eq!(filled.route(), Route::Laying, "{:?}", made.choice);
+    assert!(placed.is_certified() && placed.worst() > 0.2, "{}", placed.worst());
+    assert!(filled.mesh().n_hexes() <= 5 * problem.surface().n_quads());
+    assert!(made.tried.iter().any(|t| matches!(t, Attempt::Laying { meshes } if *meshes > 0)));
 }
 
 #[test]

@@ -66,6 +66,22 @@ pub(crate) const CORNERS: u64 = {
     set
 };
 
+/// Those of [`CORNERS`] that are at the bottom facet: what a pyramid has, whose top facet is its apex, four times.
+pub(crate) const BOTTOM_CORNERS: u64 = {
+    let mut set = 0;
+    let mut n = 0;
+    while n < 64 {
+        if CORNERS >> n & 1 == 1 && MIXED[n].coefficient.is_multiple_of(3) {
+            set |= 1 << n;
+        }
+        n += 1;
+    }
+    set
+};
+
+/// Those of [`FRAME_EDGES`] that a pyramid has.
+pub(crate) const PYRAMID_EDGES: [usize; 8] = [0, 1, 4, 5, 8, 9, 10, 11];
+
 /// The members of [`CORNERS`].
 pub(crate) const CORNER_MIXED: [usize; 8] = {
     let mut list = [0; 8];

@@ -7,7 +7,7 @@
 //! A hex starts with the eight corner terms; any of the 64 mixed determinants of its Bernstein form can be added,
 //! and with all of them positive det J is positive in the whole cell.
 
-use crate::cell::frame::{CORNERS, FRAME_EDGES, Frame, MIXED};
+use crate::cell::frame::{BOTTOM_CORNERS, CORNERS, FRAME_EDGES, Frame, MIXED, PYRAMID_EDGES};
 use crate::problem::Problem;
 use hexfill_geometry::{Vector, add_scaled, cross, det, dot, norm, sub};
 
@@ -41,7 +41,7 @@ impl<'p> Energy<'p> {
         let n = problem.hexes.len();
         let mut energy = Self {
             problem,
-            terms: vec![CORNERS; n],
+            terms: (0..n).map(|h| if problem.is_pyramid(h) { BOTTOM_CORNERS } else { CORNERS }).collect(),
             sizes: vec![1.0; n],
             rows: vec![(0.0, [[0.0; 3]; 8]); n],
             epsilon: 1.0,
@@ -69,7 +69,11 @@ impl<'p> Energy<'p> {
                 let p = problem.corners_of(h, points);
                 let lengths = FRAME_EDGES.map(|[a, b]| norm(sub(p[b], p[a])));
                 let longest = lengths.iter().fold(0.0, |m: f64, &l| m.max(l)).max(0.01 * share);
-                (lengths.iter().map(|l| l.max(1e-3 * longest).ln()).sum::<f64>() / 12.0).exp()
+                let log = |n: usize| lengths[n].max(1e-3 * longest).ln();
+                if problem.is_pyramid(h) {
+                    return (PYRAMID_EDGES.map(log).iter().sum::<f64>() / 8.0).exp();
+                }
+                ((0..12).map(log).sum::<f64>() / 12.0).exp()
             });
         }
         self.sizes = sizes;

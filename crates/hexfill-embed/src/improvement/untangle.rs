@@ -164,7 +164,14 @@ fn next_epsilon(epsilon: f64, smallest: f64, before: f64, after: f64) -> f64 {
 /// (or, if all are and bisection still fails, all of them). Returns how many cells fail.
 fn add_failing_terms(problem: &Problem, points: &[Vector], energy: &mut Energy<'_>) -> usize {
     let mut signs = vec![Sign::Positive; problem.hexes.len()];
-    problem.map_hexes(&mut signs, |h| Frame::new(&problem.corners_of(h, points)).sign(WORKING_BOXES));
+    problem.map_hexes(&mut signs, |h| {
+        // A pyramid is what its base corners say.
+        if problem.is_pyramid(h) {
+            Sign::Positive
+        } else {
+            Frame::new(&problem.corners_of(h, points)).sign(WORKING_BOXES)
+        }
+    });
     let mut failing = 0;
     for (h, sign) in signs.into_iter().enumerate() {
         if sign == Sign::Positive {

@@ -26,6 +26,8 @@ pub(crate) struct Problem {
     corners: Vec<u32>,
     /// If set, the variables are those of the symmetric positions.
     pub(crate) symmetry: Option<Symmetry>,
+    /// Cells from this one on are pyramids over what is still open: a bottom facet and, four times, the apex.
+    pub(crate) first_pyramid: usize,
 }
 
 impl Problem {
@@ -54,7 +56,14 @@ impl Problem {
             corners[cursor[s as usize] as usize] = place as u32;
             cursor[s as usize] += 1;
         }
-        Self { hexes, n_vertices, slot, free, corner_start, corners, symmetry: None }
+        let first_pyramid = hexes.len();
+        Self { hexes, n_vertices, slot, free, corner_start, corners, symmetry: None, first_pyramid }
+    }
+
+    /// Whether a cell is a pyramid over what is open.
+    #[inline]
+    pub(crate) fn is_pyramid(&self, cell: usize) -> bool {
+        cell >= self.first_pyramid
     }
 
     /// The corners of a hex.

@@ -3,7 +3,7 @@
 use crate::simplify::column_collapse::collapse_columns;
 use crate::simplify::live::LiveMesh;
 use crate::simplify::quotient::Kept;
-use crate::simplify::sheet_collapse::collapse_sheets;
+use crate::simplify::sheet_collapse::{closed_sheets, collapse_sheets, sheet_quotient};
 use crate::simplify::{Simplified, SimplifyReport, Snapshot};
 use hexfill_mesh::{Context, HexMesh};
 
@@ -35,6 +35,30 @@ pub fn collapse(mesh: &HexMesh, which: Collapse, ctx: &Context<'_>) -> Simplifie
     }
     let (mesh, origin) = Snapshot::of(&live).settled(mesh);
     Simplified { mesh, origin, report }
+}
+
+/// The meshes that `mesh` becomes if one of its closed sheets is collapsed, those that lose most hexes first: for callers who choose by what connectivity
+/// does not tell. As [`collapse`] otherwise.
+pub fn single_sheet_collapses(mesh: &HexMesh, which: Collapse) -> Vec<Simplified> {
+    if which == Collapse::Nothing {
+        return Vec::new();
+    }
+    let whole = LiveMesh::new(mesh);
+    let mut closed = closed_sheets(&whole);
+    closed.sort_by_key(|sheet| std::cmp::Reverse(sheet.len()));
+    let is_boundary = mesh.boundary_vertices();
+    let kept = Kept { is_boundary: &is_boundary, hexes: which == Collapse::Inside };
+    let one = |sheet: Vec<(u32, u8)>| {
+        let quotient = sheet_quotient(&whole, &sheet);
+        let merges = quotient.merges(&whole, &kept).ok()?;
+        let mut live = whole.clone();
+        live.merge(&quotient.removed, &quotient.facets, &merges);
+        let mut report = SimplifyReport::new(mesh.n_hexes());
+        (report.sheets, report.collapsed, report.after) = (1, mesh.n_hexes() - live.n_hexes(), live.n_hexes());
+        let (mesh, origin) = Snapshot::of(&live).settled(mesh);
+        Some(Simplified { mesh, origin, report })
+    };
+    closed.into_iter().filter_map(one).collect()
 }
 
 /// [`collapse`] in place. `is_boundary`: of the vertices of the input; those that came later are inside.

@@ -3,12 +3,12 @@
 
 use crate::atlas::Atlas;
 use crate::inward::{FillOptions, fill_from_atlas};
-use crate::simplify::Snapshot;
 use crate::simplify::column_collapse::{closed_columns, column_quotient, walk};
 use crate::simplify::live::LiveMesh;
 use crate::simplify::quotient::{Kept, Quotient, Refusal};
 use crate::simplify::region::Region;
 use crate::simplify::sheet_collapse::sheet_quotient;
+use crate::simplify::{Collapse, Snapshot, single_sheet_collapses};
 use hexfill_check::{Ball, Judged, Level, Options, judge};
 use hexfill_mesh::generate::{Random, all_spheres, grid, octagonal_spindle, schneiders_pyramid};
 use hexfill_mesh::{Context, HexMesh, sheets};
@@ -134,5 +134,22 @@ fn the_judge_agrees_with_every_answer() {
         for answer in [None, Some(Refusal::Boundary), Some(Refusal::Improper)] {
             assert!(seen.get(&(kind, answer)).is_some_and(|&n| n > 10), "{kind} {answer:?}: {seen:?}");
         }
+    }
+}
+
+/// A pillow round any ball of hexes is one of the sheets that can go, and whatever goes leaves a sound mesh.
+#[test]
+fn one_sheet_less_is_a_sound_mesh() {
+    let block = grid(3, 3, 3).unwrap();
+    let mut random = Random::new(3);
+    for _ in 0..20 {
+        let pillowed = with_pillow(&block, &mut random);
+        let fewer = single_sheet_collapses(&pillowed, Collapse::All);
+        assert!(fewer.iter().any(|one| one.mesh.n_hexes() == block.n_hexes()), "the pillow goes");
+        for one in fewer {
+            assert!(is_sound(&pillowed, &one.mesh.hexes_raw()));
+            assert_eq!(one.report.collapsed, pillowed.n_hexes() - one.mesh.n_hexes());
+        }
+        assert!(single_sheet_collapses(&pillowed, Collapse::Nothing).is_empty());
     }
 }

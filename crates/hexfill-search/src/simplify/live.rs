@@ -11,6 +11,7 @@ use hexfill_mesh::cube::FACETS;
 pub(crate) const NONE: u32 = u32::MAX;
 
 /// A mesh that changes. Hex `h` has facets `6 h + side` and corners `8 h + i`.
+#[derive(Clone)]
 pub(crate) struct LiveMesh {
     hexes: Vec<[u32; 8]>,
     neighbour: Vec<u32>,

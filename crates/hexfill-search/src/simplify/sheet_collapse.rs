@@ -45,7 +45,7 @@ pub(crate) fn collapse_sheets(live: &mut LiveMesh, kept: &Kept<'_>, ctx: &Contex
 }
 
 /// The closed sheets that do not cross themselves, by their hexes and the direction each is cut across.
-fn closed_sheets(live: &LiveMesh) -> Vec<Vec<(u32, u8)>> {
+pub(crate) fn closed_sheets(live: &LiveMesh) -> Vec<Vec<(u32, u8)>> {
     let slots: Vec<u32> = live.alive().collect();
     let hexes: Vec<[u32; 8]> = slots.iter().map(|&h| *live.hex(h)).collect();
     let mesh = HexMesh::try_new(live.n_vertex_slots(), &hexes).expect("facets stay glued in pairs");

@@ -2,6 +2,7 @@
 
 use crate::best::pillows::PillowLimits;
 use crate::fill::options::Effort;
+use hexfill_lay::LayOptions;
 use hexfill_shell::ShellOptions;
 
 /// The bounds of the work.
@@ -19,6 +20,8 @@ pub(crate) struct Budget {
     pub(crate) cavities: u64,
     /// Fillings of the smallest surfaces that are looked for where the first has no valid coordinates.
     pub(crate) fillings: usize,
+    /// How hexes are laid where no shelled mesh has valid positions.
+    pub(crate) lay: LayOptions,
     /// Pillows put between the stages of a shelled mesh that has no valid positions; `None`: not tried.
     pub(crate) pillows: Option<PillowLimits>,
     /// Engines are asked until there is a mesh of this class (0: good, 1: certified); `None`: all are.
@@ -28,13 +31,16 @@ pub(crate) struct Budget {
 impl Effort {
     pub(crate) fn budget(self, normal: &ShellOptions) -> Budget {
         let mut shell = normal.clone();
+        let mut lay = LayOptions::default();
         match self {
             Self::Fast => {
                 // Shelling takes little of the time, embedding most of it.
                 shell.candidates = 1;
+                (lay.attempts, lay.batches) = (2, 1);
                 let most = 5;
                 Budget {
                     shell,
+                    lay,
                     screening: 0,
                     programs: 0,
                     others: most,
@@ -49,6 +55,7 @@ impl Effort {
                 let pillows = Some(PillowLimits { trials: 240, most: 8.0, most_bad: 16 });
                 Budget {
                     shell,
+                    lay,
                     screening: 5,
                     programs: 20,
                     others: usize::MAX,
@@ -62,8 +69,10 @@ impl Effort {
                 shell.restarts *= 4;
                 shell.seeds *= 4;
                 shell.candidates *= 3;
+                (lay.attempts, lay.batches) = (16, 2);
                 Budget {
                     shell,
+                    lay,
                     screening: 20,
                     programs: usize::MAX,
                     others: usize::MAX,

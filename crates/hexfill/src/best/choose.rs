@@ -26,6 +26,7 @@ use crate::place::{place_as_it_is, place_at, place_best};
 use crate::problem::Problem;
 use crate::simplify::carried_positions;
 use hexfill_embed::quick_star_bound;
+use hexfill_lay::lay;
 use hexfill_mesh::{Context, HexMesh, StopReason, VertexId, hex_isomorphism};
 use hexfill_search::MAX_QUADS;
 use hexfill_shell::{Layer, SplitOptions, cut_boundary_layers, split_stars};
@@ -40,6 +41,9 @@ const STARTS: u32 = 2;
 
 /// Surfaces of more quads are constructed only if nothing else filled them.
 const MOST_CONSTRUCTED: usize = 1000;
+
+/// Hexes are laid one by one in surfaces of at most so many quads.
+const MOST_LAID: usize = 300;
 
 /// Pillows are put into meshes of surfaces of at most so many quads.
 const MOST_PILLOWED: usize = 160;
@@ -176,6 +180,7 @@ impl<'a> Trial<'a> {
             return Ok(None);
         }
         if self.options.strategy != Strategy::Auto {
+            self.lay()?;
             self.put_pillows()?;
             return Ok(None);
         }
@@ -184,6 +189,11 @@ impl<'a> Trial<'a> {
             Some(Hopeless::Crosses(why)) => Some(format!("{why} (--best goes on all the same)")),
             _ => None,
         });
+        // The atlas has many fillings of the smallest surfaces, with fewer hexes than can be laid.
+        let smallest = self.problem.surface.n_quads() <= SMALLEST;
+        if why_none.is_none() && !smallest {
+            self.lay()?;
+        }
         if self.is_small() && why_none.is_none() {
             if self.class() != Some(1) || self.budget.enough.is_none() {
                 self.flip_inward(self.options.inward_cavities.min(self.budget.cavities))?;
@@ -191,6 +201,9 @@ impl<'a> Trial<'a> {
             self.look_at_more_fillings()?;
         }
         if why_none.is_none() {
+            if smallest {
+                self.lay()?;
+            }
             self.put_pillows()?;
         }
         // A construction has some 46 hexes a quad: where shelling left a few of its own invalid, it is tried on small surfaces only.
@@ -206,10 +219,33 @@ impl<'a> Trial<'a> {
         Ok(why_none)
     }
 
+    /// Lays hexes one by one if no mesh has valid positions yet, on spheres that an apex may hold open.
+    fn lay(&mut self) -> Result<(), FillError> {
+        let surface = &self.problem.surface;
+        let is_worth = matches!(self.class(), None | Some(2)) && surface.is_sphere() && surface.n_quads() <= MOST_LAID;
+        if !is_worth || self.options.layers.is_some() || self.ctx.stop().is_some() {
+            return Ok(());
+        }
+        let made = lay(surface, self.boundary, &self.budget.lay, &self.early);
+        self.result.tried.push(Attempt::Laying { meshes: made.len() });
+        for laid in made {
+            if laid.mesh.n_hexes() as u64 > u64::from(self.options.max_hexes) {
+                continue;
+            }
+            verify(surface, &laid.mesh, Route::Laying)?;
+            let filled = Filled { start: Some(laid.points), ..Filled::by(Route::Laying, laid.mesh) };
+            self.consider_from(filled, false)?;
+        }
+        Ok(())
+    }
+
     /// Puts pillows into the shelled mesh that is nearest to valid positions, if none has any. Only on small surfaces: the work grows with the mesh.
     fn put_pillows(&mut self) -> Result<(), FillError> {
         let surface = &self.problem.surface;
         let is_worth = self.class() == Some(2) && surface.n_quads() <= MOST_PILLOWED && self.ctx.stop().is_none();
+        // Where hexes were laid, what is not valid is at vertices that pillows cannot help.
+        let is_laid = self.result.tried.iter().any(|t| matches!(t, Attempt::Laying { meshes } if *meshes > 0));
+        let is_worth = is_worth && !is_laid;
         let Some(limits) = self.budget.pillows.filter(|_| is_worth && self.options.layers.is_none()) else {
             return Ok(());
         };
@@ -316,7 +352,7 @@ impl<'a> Trial<'a> {
                 return Ok(());
             }
         }
-        if is_shelled || filled.route == Route::Construction {
+        if is_shelled || matches!(filled.route, Route::Laying | Route::Construction) {
             let bound = quick_star_bound(&filled.mesh, self.boundary).unwrap_or(1.0);
             if let Some(split) = self.split(&filled, bound)? {
                 self.consider(split)?;
@@ -326,7 +362,7 @@ impl<'a> Trial<'a> {
                 return Ok(());
             }
         }
-        let placed = if is_shelled {
+        let placed = if is_shelled || filled.route == Route::Laying {
             // Its surface vertices lie where the surface's do, so there is one way to place it.
             let mut one = *self.embed;
             one.starts = one.starts.max(1);
@@ -392,8 +428,9 @@ impl<'a> Trial<'a> {
         }
         verify(&self.problem.surface, &split.mesh, filled.route)?;
         let mut made = filled.changed(Maker::SplitStars, split.mesh);
-        // A construction starts from positions of its own.
-        let start = filled.start.as_ref().filter(|_| filled.route == Route::Construction);
+        // These start from positions of their own.
+        let is_placed = matches!(filled.route, Route::Laying | Route::Construction);
+        let start = filled.start.as_ref().filter(|_| is_placed);
         made.start = start.map(|points| {
             let origin: Vec<Option<VertexId>> =
                 (0..made.mesh.n_vertices()).map(|v| (v < points.len()).then(|| VertexId::new(v))).collect();
@@ -407,7 +444,11 @@ impl<'a> Trial<'a> {
         let limited = self.limited();
         let Some((_, filled, placed)) = self.best.as_mut().filter(|_| self.budget.programs > 0) else { return };
         let open = placed.embedding.as_ref().is_some_and(|e| placed.worst() < RELATIVE * e.target);
-        if filled.route != Route::Shelling || !placed.is_certified() || !open || limited.stop().is_some() {
+        if !matches!(filled.route, Route::Shelling | Route::Laying)
+            || !placed.is_certified()
+            || !open
+            || limited.stop().is_some()
+        {
             return;
         }
         let mut more = *self.embed;

@@ -52,6 +52,11 @@ pub enum Attempt {
         /// Fewest coarse quads that a sweep left; `usize::MAX` if it was stopped.
         left: usize,
     },
+    /// Hexes laid one by one at valid positions.
+    Laying {
+        /// Complete meshes kept.
+        meshes: usize,
+    },
     /// Pillows between the stages of a shelled mesh without valid positions.
     Pillows {
         /// Whether it has some then.
@@ -94,6 +99,8 @@ impl fmt::Display for Attempt {
                     (n, _) => write!(f, "{n} meshes"),
                 }
             }
+            Self::Laying { meshes: 0 } => write!(f, "laying, in vain"),
+            Self::Laying { meshes } => write!(f, "laying: {meshes} meshes"),
             Self::Pillows { found: true } => write!(f, "pillows between stages of the shelling"),
             Self::Pillows { found: false } => write!(f, "pillows between stages of the shelling, in vain"),
             Self::Construction(report) => report.fmt(f),

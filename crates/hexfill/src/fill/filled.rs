@@ -18,6 +18,8 @@ pub enum Route {
     Atlas,
     /// Swept inward by the surface's dual curves.
     Shelling,
+    /// Laid hex by hex from the surface inward, at valid positions all the way.
+    Laying,
     /// Hexes glued inward, the rest from the atlas.
     InwardFlips,
     /// Reached by growing an atlas towards it.
@@ -36,6 +38,7 @@ impl Route {
             Self::InwardFlips => Maker::InwardFlips,
             Self::Growth => Maker::Growth,
             Self::Construction => Maker::Construction,
+            Self::Laying => Maker::Laying,
         }
     }
 
@@ -45,6 +48,7 @@ impl Route {
             Self::Catalogue => "the catalogue",
             Self::Atlas => "atlas look-up",
             Self::Shelling => "shelling",
+            Self::Laying => "laying",
             Self::InwardFlips => "inward flips and atlas",
             Self::Growth => "growth towards the surface",
             Self::Construction => "construction",

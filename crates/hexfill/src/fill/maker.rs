@@ -45,11 +45,13 @@ pub enum Maker {
     PillowsBetween = 16,
     /// A boundary layer.
     BoundaryLayers = 17,
+    /// Laid at valid positions, one by one.
+    Laying = 18,
 }
 
 impl Maker {
     /// All, each at its number.
-    pub const ALL: [Self; 18] = [
+    pub const ALL: [Self; 19] = [
         Self::Given,
         Self::Catalogue,
         Self::InwardFlips,
@@ -68,6 +70,7 @@ impl Maker {
         Self::SplitStars,
         Self::PillowsBetween,
         Self::BoundaryLayers,
+        Self::Laying,
     ];
 
     /// Its number in the cell field `engine`.
@@ -96,6 +99,7 @@ impl Maker {
             Self::SplitStars => "split stars",
             Self::PillowsBetween => "pillows between",
             Self::BoundaryLayers => "boundary layers",
+            Self::Laying => "laying",
         }
     }
 

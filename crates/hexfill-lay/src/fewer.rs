@@ -1,0 +1,49 @@
+//! [`without_sheets`]: what can go again, as long as the rest has valid positions.
+
+use crate::lay::LaidMesh;
+use hexfill_embed::untangle_near;
+use hexfill_geometry::Vector;
+use hexfill_mesh::Context;
+use hexfill_search::{Collapse, Simplified, single_sheet_collapses};
+use rayon::prelude::*;
+
+/// Sheets tried at once; the first of them that can go goes.
+const TOGETHER: usize = 4;
+/// Rings of vertices and iterations on all, to find positions without a sheet.
+const EFFORT: (usize, usize) = (2, 300);
+
+/// The mesh without closed sheets that its positions can do without, at most `trials` tried, largest first. A pillow that gave room to a hex is often not
+/// needed any more once the hexes behind it are laid.
+pub(crate) fn without_sheets(mut laid: LaidMesh, n_surface: usize, trials: u32, ctx: &Context<'_>) -> LaidMesh {
+    let mut tried = 0;
+    'next: loop {
+        let all = single_sheet_collapses(&laid.mesh, Collapse::All);
+        for some in all.chunks(TOGETHER) {
+            if tried >= trials || ctx.stop().is_some() {
+                return laid;
+            }
+            tried += some.len() as u32;
+            let found: Vec<Option<LaidMesh>> = some.par_iter().map(|one| placed(one, &laid, n_surface, ctx)).collect();
+            if let Some(fewer) = found.into_iter().flatten().next() {
+                laid = fewer;
+                continue 'next;
+            }
+        }
+        return laid;
+    }
+}
+
+/// The mesh at valid positions near those it had; `None` if none are found.
+fn placed(fewer: &Simplified, before: &LaidMesh, n_surface: usize, ctx: &Context<'_>) -> Option<LaidMesh> {
+    // Collapsing merges vertices, so each was there before; vertices of no hex are dropped.
+    let start: Vec<Vector> = fewer.origin.iter().map(|o| o.map(|v| before.points[v.index()])).collect::<Option<_>>()?;
+    debug_assert!((0..n_surface).all(|v| fewer.origin[v].is_some_and(|o| o.index() == v)));
+    let quiet = Context { progress: None, ..*ctx };
+    let (points, bad) = untangle_near(&fewer.mesh, &start, EFFORT.0, EFFORT.1, &quiet).ok()?;
+    (bad.len() <= before.invalid).then(|| LaidMesh {
+        mesh: fewer.mesh.clone(),
+        points,
+        invalid: bad.len(),
+        pillows: before.pillows,
+    })
+}

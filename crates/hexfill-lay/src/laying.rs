@@ -1,0 +1,310 @@
+//! [`Laying`]: the hexes laid so far, their positions, and the front of what is open.
+
+use crate::plan::Plan;
+use crate::void_front::{NOT_YET, VoidFront, advanced};
+use hexfill_embed::{Open, OpenEffort, untangle_near};
+use hexfill_geometry::Vector;
+use hexfill_mesh::cube::CORNER_NEIGHBOURS;
+use hexfill_mesh::{Context, HexMesh, QuadSurface};
+use rustc_hash::FxHashMap;
+use std::borrow::Cow;
+
+/// A new vertex begins at the mean of its neighbours, moved by this share towards the apex.
+const INWARD: f64 = 0.15;
+/// Shares of the way to the apex by which a pillow's inner side lies further in, the first valid one is taken.
+const HEIGHTS: [f64; 3] = [0.3, 0.15, 0.5];
+/// Rounds of rounding a pillow, each kept only if it stays valid.
+const ROUNDINGS: usize = 8;
+/// One hex of the first pillow in so many may be forgiven.
+const FEW: usize = 8;
+/// A hex goes first where it covers at least so many quads: then the front does not grow.
+const MANY: u32 = 3;
+/// Hexes that are tried with more of their surroundings free.
+const TRIED_WIDER: usize = 6;
+/// After so many hexes all is rounded.
+const ROUNDED: usize = 4;
+
+/// How long the untangler tries: the first pillow, a hex with one ring of free vertices, with more, with all, rounding a pillow, rounding everything.
+const FIRST_PILLOW: OpenEffort = effort(100, 200, 2);
+const ONE_RING: OpenEffort = effort(20, 60, 0);
+const MORE_RINGS: OpenEffort = effort(60, 60, 0);
+const ALL: OpenEffort = effort(60, 100, 1);
+const JUDGE: OpenEffort = effort(0, 0, 0);
+const ROUND_PILLOW: OpenEffort = effort(1, 15, 0);
+const ROUND_ALL: OpenEffort = effort(3, 60, 2);
+
+const fn effort(rounds: usize, iterations: usize, extra: usize) -> OpenEffort {
+    OpenEffort { rounds, iterations, extra }
+}
+
+/// Hexes, positions, front. Invariant between calls: every hex that is not forgiven is valid in floating point, and so is every pyramid over the front.
+#[derive(Clone, Debug)]
+pub(crate) struct Laying {
+    pub(crate) hexes: Vec<[u32; 8]>,
+    pub(crate) points: Vec<Vector>,
+    /// Quads counter-clockwise seen from outside of the void.
+    pub(crate) front: Vec<[u32; 4]>,
+    pub(crate) pillows: u32,
+    /// Hexes of the first pillow, by number, for which the surface leaves no room: they wait for a second edge at its vertices, and nothing looks at them.
+    pub(crate) forgiven: Vec<u32>,
+    /// Vertices of the surface, which stay.
+    n_fixed: usize,
+    /// Inside the void.
+    apex: Vector,
+    /// Hexes of the plan since all was rounded.
+    since: usize,
+}
+
+/// A plan on its way: which vertices and hexes of it are laid.
+#[derive(Clone, Debug)]
+pub(crate) struct Underway {
+    plan: Plan,
+    /// Per vertex of the plan: its id among those laid, or [`NOT_YET`].
+    ids: Vec<u32>,
+    /// Hexes of the plan still to lay, in its order.
+    rest: Vec<u32>,
+}
+
+impl Underway {
+    /// Whether all its hexes are laid.
+    pub(crate) fn is_over(&self) -> bool {
+        self.rest.is_empty()
+    }
+}
+
+impl Laying {
+    /// A surface with a pillow under it; `None` if more than a few hexes of that have no valid positions with the apex at the origin.
+    pub(crate) fn begin(surface: &QuadSurface, points: &[Vector], ctx: &Context<'_>) -> Option<Self> {
+        let (apex, front) = ([0.0; 3], surface.quads_raw());
+        let mut laying = Self {
+            hexes: Vec::new(),
+            points: points.to_vec(),
+            front,
+            pillows: 0,
+            forgiven: Vec::new(),
+            n_fixed: points.len(),
+            apex,
+            since: 0,
+        };
+        laying.put_pillow(HEIGHTS[0]);
+        let free = laying.all();
+        let [bad, pyramids] = laying.untangle(&free, FIRST_PILLOW, ctx);
+        if pyramids > 0 || bad * FEW > surface.n_quads() {
+            return None;
+        }
+        if bad > 0 {
+            laying.forgive();
+            if laying.untangle(&free, FIRST_PILLOW, ctx) != [0, 0] {
+                return None;
+            }
+        }
+        Some(laying)
+    }
+
+    /// Forgives the hexes that are not valid.
+    fn forgive(&mut self) {
+        let whole = HexMesh::try_new(self.points.len(), &self.hexes);
+        let invalid = whole.ok().and_then(|mesh| untangle_near(&mesh, &self.points, 0, 0, &Context::default()).ok());
+        self.forgiven = invalid.into_iter().flat_map(|(_, bad)| bad).map(|h| h.0).collect();
+    }
+
+    /// The surface that the front is, with a new number for each vertex, and the old ones. `None` if it is no proper surface.
+    pub(crate) fn front_surface(&self) -> Option<(QuadSurface, Vec<u32>)> {
+        let mut number: FxHashMap<u32, u32> = FxHashMap::default();
+        let mut ids = Vec::new();
+        let quads: Vec<[u32; 4]> = self
+            .front
+            .iter()
+            .map(|q| {
+                q.map(|v| {
+                    *number.entry(v).or_insert_with(|| {
+                        ids.push(v);
+                        ids.len() as u32 - 1
+                    })
+                })
+            })
+            .collect();
+        QuadSurface::try_new(ids.len(), &quads).ok().filter(QuadSurface::is_sphere).map(|surface| (surface, ids))
+    }
+
+    /// A plan for the void as it is.
+    pub(crate) fn planned(&self, number: u64, ctx: &Context<'_>) -> Option<Underway> {
+        let (surface, mut ids) = self.front_surface()?;
+        let plan = Plan::new(&surface, number, ctx)?;
+        ids.resize(plan.n_vertices, NOT_YET);
+        Some(Underway { rest: (0..plan.hexes.len() as u32).collect(), plan, ids })
+    }
+
+    /// Lays one hex of the plan where it is valid: those that cover many quads first and, if `any`, others in the order of the plan. False if none was.
+    pub(crate) fn lay_one(&mut self, underway: &mut Underway, any: bool, ctx: &Context<'_>) -> bool {
+        let candidates = self.candidates(underway, any);
+        let wider = || candidates.iter().take(TRIED_WIDER);
+        let tries = candidates
+            .iter()
+            .map(|c| (c, Some(1)))
+            .chain(wider().map(|c| (c, Some(2))))
+            .chain(wider().map(|c| (c, Some(3))))
+            .chain(wider().map(|c| (c, None)));
+        for (&(hex, covered), rings) in tries {
+            if ctx.stop().is_some() {
+                return false;
+            }
+            let mut trial = self.clone();
+            let mut ids = underway.ids.clone();
+            trial.add(&underway.plan.hexes[hex as usize], covered, &mut ids);
+            if trial.finds_room(rings, ctx) {
+                *self = trial;
+                underway.ids = ids;
+                underway.rest.retain(|&h| h != hex);
+                self.round_now_and_then(ctx);
+                return true;
+            }
+        }
+        false
+    }
+
+    /// The hexes of the plan that could be laid now, with the facets that lie on the front.
+    fn candidates(&self, underway: &Underway, any: bool) -> Vec<(u32, u8)> {
+        let sets = VoidFront::new(&self.front);
+        let laid = |h: u32| underway.plan.hexes[h as usize].map(|v| underway.ids[v as usize]);
+        let legal = underway.rest.iter().filter_map(|&h| sets.covered_by(&laid(h)).map(|covered| (h, covered)));
+        let (mut many, few): (Vec<_>, Vec<_>) = legal.partition(|(_, covered)| covered.count_ones() >= MANY);
+        // Stable: in the order of the plan among equals.
+        many.sort_by_key(|(_, covered)| std::cmp::Reverse(covered.count_ones()));
+        if any || many.is_empty() {
+            many.extend(few.first());
+        }
+        many
+    }
+
+    /// Adds a hex of a plan, its new vertices near those it has.
+    fn add(&mut self, hex: &[u32; 8], covered: u8, ids: &mut [u32]) {
+        let mut laid = hex.map(|v| ids[v as usize]);
+        for corner in 0..8 {
+            if laid[corner] != NOT_YET {
+                continue;
+            }
+            let at = |k: usize| (laid[k] != NOT_YET).then(|| self.points[laid[k] as usize]);
+            let mut near: Vec<Vector> = CORNER_NEIGHBOURS[corner].iter().filter_map(|&k| at(k)).collect();
+            if near.is_empty() {
+                near = (0..8).filter_map(at).collect();
+            }
+            let n = near.len() as f64;
+            let mean: Vector = std::array::from_fn(|axis| near.iter().map(|p| p[axis]).sum::<f64>() / n);
+            laid[corner] = self.points.len() as u32;
+            ids[hex[corner] as usize] = laid[corner];
+            self.points.push(towards(mean, self.apex, INWARD));
+        }
+        self.front = advanced(&self.front, &laid, covered);
+        self.hexes.push(laid);
+    }
+
+    /// Untangles round the last hex, with so many rings free, or all. Whether that made everything valid.
+    fn finds_room(&mut self, rings: Option<usize>, ctx: &Context<'_>) -> bool {
+        let free = rings.map_or_else(|| self.all(), |rings| self.near_last(rings));
+        let effort = match rings {
+            Some(1) => ONE_RING,
+            Some(_) => MORE_RINGS,
+            None => ALL,
+        };
+        self.untangle(&free, effort, ctx) == [0, 0]
+    }
+
+    /// Puts a pillow behind the front and follows it with the plan. It is valid, as the pyramids are, unless a cell with positive corners is
+    /// not: then the pillow with fewest such cells is taken, and later hexes mend it.
+    pub(crate) fn pillow(&mut self, underway: Option<&mut Underway>, ctx: &Context<'_>) {
+        let mut best: Option<([usize; 2], Self, FxHashMap<u32, u32>)> = None;
+        for height in HEIGHTS {
+            let mut trial = self.clone();
+            let copies = trial.put_pillow(height);
+            let free = trial.all();
+            let bad = trial.untangle(&free, JUDGE, ctx);
+            if best.as_ref().is_none_or(|(least, ..)| bad < *least) {
+                best = Some((bad, trial, copies));
+            }
+            if bad == [0, 0] {
+                break;
+            }
+        }
+        let Some((bad, pillowed, copies)) = best else { return };
+        *self = pillowed;
+        let free = self.all();
+        for _ in 0..ROUNDINGS {
+            let before = self.points.clone();
+            if self.untangle(&free, ROUND_PILLOW, ctx) > bad {
+                self.points = before;
+                break;
+            }
+        }
+        for id in underway.into_iter().flat_map(|underway| &mut underway.ids) {
+            *id = copies.get(id).copied().unwrap_or(*id);
+        }
+    }
+
+    /// One hex behind every quad of the front, its inner side by a share of the way further in. Returns the copies of the vertices.
+    fn put_pillow(&mut self, height: f64) -> FxHashMap<u32, u32> {
+        let mut copies: FxHashMap<u32, u32> = FxHashMap::default();
+        for quad in &mut self.front {
+            let outer = *quad;
+            *quad = outer.map(|v| {
+                *copies.entry(v).or_insert_with(|| {
+                    self.points.push(towards(self.points[v as usize], self.apex, height));
+                    self.points.len() as u32 - 1
+                })
+            });
+            let [a, b, c, d] = *quad;
+            self.hexes.push([a, b, c, d, outer[0], outer[1], outer[2], outer[3]]);
+        }
+        self.pillows += 1;
+        self.since = 0;
+        copies
+    }
+
+    /// Rounds everything after some hexes, unless that makes a cell bad.
+    fn round_now_and_then(&mut self, ctx: &Context<'_>) {
+        self.since += 1;
+        if !self.since.is_multiple_of(ROUNDED) || self.front.is_empty() {
+            return;
+        }
+        let before = self.points.clone();
+        let free = self.all();
+        if self.untangle(&free, ROUND_ALL, ctx) != [0, 0] {
+            self.points = before;
+        }
+    }
+
+    /// Moves the free vertices. Returns the hexes and the pyramids at them that are not valid.
+    fn untangle(&mut self, free: &[bool], effort: OpenEffort, ctx: &Context<'_>) -> [usize; 2] {
+        let quiet = Context { progress: None, ..*ctx };
+        let looked_at: Cow<'_, [[u32; 8]]> = if self.forgiven.is_empty() {
+            Cow::Borrowed(&self.hexes)
+        } else {
+            (0..).zip(&self.hexes).filter(|(h, _)| !self.forgiven.contains(h)).map(|(_, hex)| *hex).collect()
+        };
+        Open { hexes: &looked_at, front: &self.front, apex: self.apex }.untangle(free, &mut self.points, effort, &quiet)
+    }
+
+    fn all(&self) -> Vec<bool> {
+        (0..self.points.len()).map(|v| v >= self.n_fixed).collect()
+    }
+
+    /// The vertices within so many rings of cells round the last hex, but for those of the surface.
+    fn near_last(&self, rings: usize) -> Vec<bool> {
+        let mut near = vec![false; self.points.len()];
+        self.hexes.last().into_iter().flatten().for_each(|&v| near[v as usize] = true);
+        for _ in 0..rings {
+            let before = near.clone();
+            let cells = self.hexes.iter().map(<[u32; 8]>::as_slice).chain(self.front.iter().map(<[u32; 4]>::as_slice));
+            for cell in cells.filter(|cell| cell.iter().any(|&v| before[v as usize])) {
+                cell.iter().for_each(|&v| near[v as usize] = true);
+            }
+        }
+        near[..self.n_fixed].fill(false);
+        near
+    }
+}
+
+/// The point by this share of the way from `p` to `q`.
+fn towards(p: Vector, q: Vector, share: f64) -> Vector {
+    std::array::from_fn(|axis| p[axis] + share * (q[axis] - p[axis]))
+}
