@@ -5,7 +5,7 @@
 >>> mesh.n_hexes, mesh.certified
 (36, True)
 
-The verbs are :func:`fill`, :func:`check`, :func:`embed`, :func:`simplify`, :func:`info`, :func:`doctor`, :func:`mend`, :func:`atlas`, :func:`catalog`,
+The verbs are :func:`fill`, :func:`check`, :func:`embed`, :func:`simplify`, :func:`info`, :func:`doctor`, :func:`mend`, :func:`regions`, :func:`atlas`, :func:`catalog`,
 :func:`enumerate`, :func:`read`, :func:`write` and :func:`view`; what they share is said in :mod:`hexfill.verbs`.
 """
 
@@ -25,6 +25,7 @@ from .mesh import HexMesh, Surface
 from .verbs import (
     CatalogEntry,
     Enumeration,
+    Region,
     Verdict,
     atlas,
     catalog,
@@ -36,6 +37,7 @@ from .verbs import (
     info,
     mend,
     read,
+    regions,
     simplify,
     view,
     write,
@@ -54,6 +56,7 @@ __all__ = [
     "MeshError",
     "NoMeshExists",
     "NoMeshFound",
+    "Region",
     "Surface",
     "SurfaceError",
     "Verdict",
@@ -67,6 +70,7 @@ __all__ = [
     "info",
     "mend",
     "read",
+    "regions",
     "simplify",
     "view",
     "write",

@@ -28,7 +28,10 @@ class Given(TypedDict):
     point_tags: NDArray[Any] | None
     quad_tags: NDArray[Any] | None
     hex_tags: NDArray[Any] | None
+    point_data: list[tuple[str, NDArray[Any]]]
+    quad_data: list[tuple[str, NDArray[Any]]]
     hex_data: list[tuple[str, NDArray[Any]]]
+    tag_names: list[tuple[str, int, str]]
 
 
 class Filling(TypedDict):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import operator
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -98,6 +99,33 @@ def tags(given: Any, n: int, name: str) -> NDArray[np.int64] | None:
     if array.dtype.kind == "u" and array.size and int(array.max()) > np.iinfo(np.int64).max:
         raise InputError(f"{name}: {int(array.max())} does not fit into 64 bits with a sign")
     return np.ascontiguousarray(array, dtype=np.int64)
+
+
+def fields(given: Mapping[str, Any] | None, n: int, name: str) -> list[tuple[str, Floats]]:
+    """Named numbers, one a point or cell."""
+    found = []
+    for field, numbers in (given or {}).items():
+        array = _array(numbers, f"{name}[{field!r}]")
+        if array.dtype.kind not in "fiub":
+            raise TypeError(f"{name}[{field!r}] must be real numbers, not {array.dtype}")
+        if array.shape != (n,):
+            raise InputError(f"{name}[{field!r}] must have shape ({n},), not {array.shape}")
+        found.append((str(field), np.ascontiguousarray(array, dtype=np.float64)))
+    return found
+
+
+def names(given: Iterable[tuple[str, int, str]]) -> list[tuple[str, int, str]]:
+    """Names of tags."""
+    found = []
+    for entry in given:
+        try:
+            what, tag, name = entry
+        except (TypeError, ValueError):
+            raise InputError(f"tag_names: {entry!r} is not (what, tag, name)") from None
+        if what not in ("points", "quads", "hexes"):
+            raise InputError(f"tag_names: {what!r} is not 'points', 'quads' or 'hexes'")
+        found.append((what, whole(tag, "tag", -(2**63), 2**63 - 1), str(name)))
+    return found
 
 
 def _some(letter: str, ids: NDArray[Any]) -> str:

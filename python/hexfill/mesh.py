@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import html
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from functools import cached_property
 from os import PathLike, fspath
 from typing import TYPE_CHECKING, Any
@@ -49,6 +49,9 @@ class _Arrays:
         flat: NDArray[Any] = np.frombuffer(raw, dtype)
         return flat if columns is None else flat.reshape(-1, columns)
 
+    def _fields(self, raw: Mapping[str, bytes]) -> dict[str, NDArray[np.float64]]:
+        return {name: self._numbers(numbers, np.float64) for name, numbers in raw.items()}
+
     @cached_property
     def points(self) -> NDArray[np.float64] | None:
         """Positions (n, 3), in the unit of the input; ``None`` for connectivity alone."""
@@ -68,6 +71,22 @@ class _Arrays:
     def quad_tags(self) -> NDArray[np.int64] | None:
         """A number (m,) a quad, such as a boundary condition, 0 for none; ``None`` if there are no tags."""
         return self._numbers(self._data.quad_tags, np.int64)
+
+    @cached_property
+    def quad_data(self) -> dict[str, NDArray[np.float64]]:
+        """Named numbers (m,) a quad, as they were given; NaN where there is none."""
+        return self._fields(self._data.quad_data)
+
+    @cached_property
+    def point_data(self) -> dict[str, NDArray[np.float64]]:
+        """Named numbers (n,) a point, as they were given; NaN where there is none, as at points that :func:`hexfill.fill` makes."""
+        return self._fields(self._data.point_data)
+
+    @property
+    def tag_names(self) -> list[tuple[str, int, str]]:
+        """Names of tags: ``"points"``, ``"quads"`` or ``"hexes"``, the tag, the name. A tag that stands for several groups has several
+        names, and a group that overlaps others several tags."""
+        return self._data.tag_names
 
     @property
     def n_quads(self) -> int:
@@ -98,7 +117,10 @@ class _Arrays:
             "point_tags": self.point_tags,
             "quad_tags": self.quad_tags,
             "hex_tags": None,
+            "point_data": list(self.point_data.items()),
+            "quad_data": list(self.quad_data.items()),
             "hex_data": [],
+            "tag_names": self.tag_names,
         }
 
     def __reduce__(self) -> Any:
@@ -116,6 +138,10 @@ class Surface(_Arrays):
         Vertex ids, 0-based, in cyclic order. Orientation is repaired where it is mixed.
     point_tags, quad_tags : (n,) and (m,) integers, optional
         Numbers to carry over to the mesh.
+    point_data, quad_data : dictionaries of (n,) and (m,) real numbers, optional
+        Fields to carry over to the mesh.
+    tag_names : list of (what, tag, name), optional
+        Names of tags to carry over; what is ``"points"`` or ``"quads"``.
     name : str
         What to call it in messages.
     """
@@ -127,9 +153,21 @@ class Surface(_Arrays):
         *,
         point_tags: ArrayLike | None = None,
         quad_tags: ArrayLike | None = None,
+        point_data: Mapping[str, ArrayLike] | None = None,
+        quad_data: Mapping[str, ArrayLike] | None = None,
+        tag_names: Iterable[tuple[str, int, str]] = (),
         name: str = "surface",
     ) -> None:
-        data = _data(points, quads, None, point_tags=point_tags, quad_tags=quad_tags)
+        data = _data(
+            points,
+            quads,
+            None,
+            point_tags=point_tags,
+            quad_tags=quad_tags,
+            point_data=point_data,
+            quad_data=quad_data,
+            tag_names=tag_names,
+        )
         super().__init__(data, name)
 
     def to_pyvista(self) -> pyvista.PolyData:
@@ -161,6 +199,10 @@ class HexMesh(_Arrays):
         The quads of its surface, if they are known.
     point_tags, quad_tags, hex_tags : (n,), (m,) and (k,) integers, optional
         Numbers to carry along.
+    point_data, quad_data, hex_data : dictionaries of (n,), (m,) and (k,) real numbers, optional
+        Fields to carry along.
+    tag_names : list of (what, tag, name), optional
+        Names of tags; what is ``"points"``, ``"quads"`` or ``"hexes"``.
     name : str
         What to call it in messages and titles.
     """
@@ -174,9 +216,24 @@ class HexMesh(_Arrays):
         point_tags: ArrayLike | None = None,
         quad_tags: ArrayLike | None = None,
         hex_tags: ArrayLike | None = None,
+        point_data: Mapping[str, ArrayLike] | None = None,
+        quad_data: Mapping[str, ArrayLike] | None = None,
+        hex_data: Mapping[str, ArrayLike] | None = None,
+        tag_names: Iterable[tuple[str, int, str]] = (),
         name: str = "mesh",
     ) -> None:
-        data = _data(points, quads, hexes, point_tags=point_tags, quad_tags=quad_tags, hex_tags=hex_tags)
+        data = _data(
+            points,
+            quads,
+            hexes,
+            point_tags=point_tags,
+            quad_tags=quad_tags,
+            hex_tags=hex_tags,
+            point_data=point_data,
+            quad_data=quad_data,
+            hex_data=hex_data,
+            tag_names=tag_names,
+        )
         super().__init__(data, name)
 
     @cached_property
@@ -197,8 +254,17 @@ class HexMesh(_Arrays):
     @cached_property
     def hex_data(self) -> dict[str, NDArray[np.float64]]:
         """Named numbers (k,) a hex. After fill and embed: ``certified_positive`` (1: det J > 0 everywhere in it, 0: that was not
-        shown) and ``scaled_jacobian`` (a certified lower bound of it)."""
-        return {name: self._numbers(raw, np.float64) for name, raw in self._data.hex_data.items()}
+        shown) and ``scaled_jacobian`` (a certified lower bound of it); after fill also ``engine`` (what made it, a number: :attr:`engines` has the
+        words) and ``layer`` (1: with a facet on the surface, 2: next to such a one, and so on)."""
+        return self._fields(self._data.hex_data)
+
+    @property
+    def engines(self) -> NDArray[np.str_] | None:
+        """What made each hex (k,), in the words of ``report["stages"]``, which counts them; ``None`` if that is not known."""
+        numbers, words = self.hex_data.get("engine"), np.array(_native.engines())
+        if numbers is None or not np.isin(numbers, np.arange(len(words))).all():
+            return None
+        return words[numbers.astype(int)]
 
     @property
     def certified(self) -> bool | None:
@@ -309,6 +375,10 @@ def _data(
     point_tags: ArrayLike | None = None,
     quad_tags: ArrayLike | None = None,
     hex_tags: ArrayLike | None = None,
+    point_data: Mapping[str, ArrayLike] | None = None,
+    quad_data: Mapping[str, ArrayLike] | None = None,
+    hex_data: Mapping[str, ArrayLike] | None = None,
+    tag_names: Iterable[tuple[str, int, str]] = (),
 ) -> _native.Data:
     """Arrays as the compiled half takes them."""
     positions = None if points is None else arrays.points(points)
@@ -327,7 +397,10 @@ def _data(
             "point_tags": arrays.tags(point_tags, n, "point_tags"),
             "quad_tags": arrays.tags(quad_tags, len(quad_ids), "quad_tags"),
             "hex_tags": arrays.tags(hex_tags, len(hex_ids), "hex_tags"),
-            "hex_data": [],
+            "point_data": arrays.fields(point_data, n, "point_data"),
+            "quad_data": arrays.fields(quad_data, len(quad_ids), "quad_data"),
+            "hex_data": arrays.fields(hex_data, len(hex_ids), "hex_data"),
+            "tag_names": arrays.names(tag_names),
         }
     )
 

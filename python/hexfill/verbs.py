@@ -19,12 +19,13 @@ the best so far; a second one leaves at once.
 
 from __future__ import annotations
 
+import builtins
 import json
 import warnings
 from collections.abc import Mapping
 from os import PathLike, fspath
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -61,6 +62,8 @@ def fill(
     embed: bool = True,
     embed_limit: Time = None,
     simplify: bool = False,
+    weld: float | None = None,
+    linearise: bool = False,
     threads: int | None = None,
     time_limit: Time = None,
     seed: int = 0,
@@ -97,6 +100,10 @@ def fill(
         Seconds that the embedding of one mesh may take (of all, with ``best_of``); None: as long as its bounded work takes.
     simplify : bool
         Make a constructed mesh smaller (see :func:`simplify`); harder to embed then.
+    weld : float, optional
+        First merge points that are at most so far apart (0: at the same place), as exporters leave them at seams.
+    linearise : bool
+        Take cells of higher order (quad8, hex20, ...) of a file as their corners.
     threads, time_limit, seed, progress
         See :mod:`hexfill.verbs`.
 
@@ -106,6 +113,10 @@ def fill(
         The first n of ``points`` are those given, bit for bit; ``quads`` are those given, in order (turned outward where they were
         not). Its connectivity was judged. ``mesh.certified`` says whether det J > 0 was proved everywhere in every hex:
         where it is False, ``mesh.hex_data["certified_positive"]`` flags the hexes. ``mesh.report`` says how it was made.
+        Tags of quads and points, their names and data are carried over.
+
+        Walls between several regions, and voids among hexes of a mesh, are filled region by region (:func:`regions`): the mesh is the whole,
+        ``mesh.hex_tags`` has the number of the region, from 1 (where there are several), and ``mesh.report["regions"]`` says how each was made.
 
     Raises
     ------
@@ -118,7 +129,7 @@ def fill(
     InputError, TypeError
         Other arguments that cannot be used.
     """
-    given = as_surface(surface, quads)
+    given = _prepared(as_surface(surface, quads), weld, linearise)
     how = run(threads, time_limit, seed, progress)
     if layers is not None and (best_of != 1 or not embed):
         raise InputError("layers are cut into one mesh with positions: leave out best_of and embed=False")
@@ -142,6 +153,32 @@ def fill(
         "simplify": bool(simplify),
     }
     return _finished(_native.fill(given._data, given.name, options, how["time_limit"], how), given.name)
+
+
+class Region(NamedTuple):
+    """One of several solids that share walls, or a void among hexes."""
+
+    #: Its boundary, outward from it.
+    surface: Surface
+    #: Per point of it, the point of the whole.
+    points: NDArray[np.int64]
+
+
+def regions(surface: SurfaceLike, quads: ArrayLike | None = None) -> list[Region]:
+    """The regions that quads bound and no hexes fill, in the order of their first quad: one for a plain closed surface, several where walls are shared (an edge
+    is in three quads or more), the voids of a mesh with hexes. What :func:`fill` fills one by one. Quads keep their tags."""
+    given = as_surface(surface, quads)
+    found = _native.regions(given._data, given.name, run())
+    parts = [(made(data, f"region {i} of {given.name}"), np.frombuffer(ids, np.int64)) for i, (data, ids) in builtins.enumerate(found, 1)]
+    return [Region(part, ids) for part, ids in parts if isinstance(part, Surface)]
+
+
+def _prepared(given: Surface | HexMesh, weld: float | None, linearise: bool) -> Surface | HexMesh:
+    """With seams welded and cells straight, if that is asked for."""
+    if weld is None and not linearise:
+        return given
+    tolerance = None if weld is None else arrays.real(weld, "weld", zero=True)
+    return made(_native.prepared(given._data, given.name, tolerance, bool(linearise), run()), given.name)
 
 
 class Verdict:
@@ -467,14 +504,16 @@ def enumerate(
     return Enumeration(cubes, json.loads(report), signatures)
 
 
-def read(path: str | PathLike[str], *, format: str | None = None) -> Surface | HexMesh:
+def read(
+    path: str | PathLike[str], *, format: str | None = None, weld: float | None = None, linearise: bool = False
+) -> Surface | HexMesh:
     """Reads a file: a :class:`HexMesh` if it holds hexes, else a :class:`Surface`.
 
-    OBJ, OFF, PLY, VTK, VTU, VTP, MEDIT, Gmsh MSH, Abaqus INP, OVM and JSON, each also ``.gz`` or ``.zst``; ``format`` names one if the
-    extension does not. A catalogue name (``":schneiders-pyramid"``) and a signature are taken, too.
+    OBJ, OFF, PLY, VTK, VTU, VTP, MEDIT, Gmsh MSH, Abaqus INP, Nastran BDF, I-DEAS UNV, OVM and JSON, each also ``.gz`` or ``.zst``; ``format`` names one if the
+    extension does not. A catalogue name (``":schneiders-pyramid"``) and a signature are taken, too. ``weld`` and ``linearise`` as for :func:`fill`.
     """
     name = _text(path)
-    return made(_native.load(name, format, run()), name)
+    return _prepared(made(_native.load(name, format, run()), name), weld, linearise)
 
 
 def write(path: str | PathLike[str], mesh: SurfaceLike, *, format: str | None = None) -> None:

@@ -3,9 +3,10 @@
 //! It is never changed, so that a mesh that was judged stays as it was judged. Arrays leave as `bytes`, which numpy reads without a
 //! copy as arrays that cannot be written to.
 
+use crate::failure::Failure;
 use crate::work::{Run, run};
 use hexfill::Problem;
-use hexfill::io::{Format, MeshData, OtherFace};
+use hexfill::io::{Format, MeshData, OtherFace, TagName, TagOn};
 use hexfill::mesh::parse_hex_signature;
 use pyo3::buffer::PyBuffer;
 use pyo3::prelude::*;
@@ -28,8 +29,14 @@ struct Given {
     point_tags: Option<PyBuffer<i64>>,
     quad_tags: Option<PyBuffer<i64>>,
     hex_tags: Option<PyBuffer<i64>>,
-    hex_data: Vec<(String, PyBuffer<f64>)>,
+    point_data: Fields,
+    quad_data: Fields,
+    hex_data: Fields,
+    tag_names: Vec<(String, i64, String)>,
 }
+
+/// Named numbers.
+type Fields = Vec<(String, PyBuffer<f64>)>;
 
 /// A flat buffer as rows of `N`.
 fn rows<T: pyo3::buffer::Element, const N: usize>(py: Python<'_>, buffer: &PyBuffer<T>) -> PyResult<Vec<[T; N]>> {
@@ -51,12 +58,24 @@ fn bytes<'py, T: Copy, const N: usize>(
     filled.expect("filling does not fail")
 }
 
-fn ids<'py>(py: Python<'py>, ids: &[u32]) -> Bound<'py, PyBytes> {
+pub(crate) fn ids<'py>(py: Python<'py>, ids: &[u32]) -> Bound<'py, PyBytes> {
     bytes(py, ids, |id| i64::from(id).to_ne_bytes())
 }
 
 fn tags<'py>(py: Python<'py>, tags: Option<&Vec<i64>>) -> Option<Bound<'py, PyBytes>> {
     tags.map(|tags| bytes(py, tags, i64::to_ne_bytes))
+}
+
+/// Words for what tags are on.
+const ON: [(TagOn, &str); 3] = [(TagOn::Points, "points"), (TagOn::Faces, "quads"), (TagOn::Cells, "hexes")];
+
+/// Named numbers as bytes of float64.
+fn fields<'py>(py: Python<'py>, fields: &[(String, Vec<f64>)]) -> PyResult<Bound<'py, PyDict>> {
+    let named = PyDict::new(py);
+    for (name, numbers) in fields {
+        named.set_item(name, floats(py, numbers))?;
+    }
+    Ok(named)
 }
 
 /// Numbers as bytes of float64.
@@ -89,9 +108,16 @@ impl Data {
         data.point_tags = optional(&given.point_tags)?;
         data.quad_tags = optional(&given.quad_tags)?;
         data.hex_tags = optional(&given.hex_tags)?;
-        for (name, numbers) in given.hex_data {
-            data.hex_data.push((name, numbers.to_vec(py)?));
-        }
+        let fields = |given: Fields| -> PyResult<Vec<(String, Vec<f64>)>> {
+            given.into_iter().map(|(name, numbers)| Ok((name, numbers.to_vec(py)?))).collect()
+        };
+        data.point_data = fields(given.point_data)?;
+        data.quad_data = fields(given.quad_data)?;
+        data.hex_data = fields(given.hex_data)?;
+        let on = |word: &str| ON.iter().find(|(_, known)| *known == word).map(|(on, _)| *on);
+        let named = |(word, tag, name): (String, i64, String)| on(&word).map(|on| TagName { on, tag, name });
+        data.tag_names = given.tag_names.into_iter().filter_map(named).collect();
+        data.tag_names.sort();
         Ok(data.into())
     }
 
@@ -138,11 +164,24 @@ impl Data {
 
     #[getter]
     fn hex_data<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let named = PyDict::new(py);
-        for (name, numbers) in &self.0.hex_data {
-            named.set_item(name, floats(py, numbers))?;
-        }
-        Ok(named)
+        fields(py, &self.0.hex_data)
+    }
+
+    #[getter]
+    fn quad_data<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        fields(py, &self.0.quad_data)
+    }
+
+    #[getter]
+    fn point_data<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        fields(py, &self.0.point_data)
+    }
+
+    /// What the tag is on, the tag, its name.
+    #[getter]
+    fn tag_names(&self) -> Vec<(&'static str, i64, String)> {
+        let word = |on: TagOn| ON.iter().find(|(known, _)| *known == on).map_or("", |(_, word)| word);
+        self.0.tag_names.iter().map(|n| (word(n.on), n.tag, n.name.clone())).collect()
     }
 
     #[getter]
@@ -167,6 +206,41 @@ pub(crate) fn load(py: Python<'_>, spec: String, format: Option<String>, how: Ru
         }
         let format = format.map(|name| Format::from_name(&name)).transpose()?;
         Ok(hexfill::io::read_path(Path::new(&spec), format)?)
+    })?;
+    Ok(data.into())
+}
+
+/// The same with points merged that are at most `weld` apart, and cells of higher order as their corners.
+///
+/// # Errors
+/// `InputError`.
+#[pyfunction]
+pub(crate) fn prepared(
+    py: Python<'_>,
+    data: &Data,
+    name: String,
+    weld: Option<f64>,
+    linearise: bool,
+    how: Run,
+) -> PyResult<Data> {
+    let data = Arc::clone(&data.0);
+    let (data, _) = run(py, how, move |_| {
+        let mut data = (*data).clone();
+        if linearise {
+            data = data.linearised();
+        }
+        if let Some(tolerance) = weld {
+            let welded = hexfill::io::weld(&mut data, tolerance);
+            if welded.collapsed > 0 {
+                return Err(Failure::input(format!(
+                    "weld={tolerance} merges corners of {} faces or cells of {name} with each other; use a smaller tolerance",
+                    welded.collapsed
+                )));
+            }
+            let (merged, left) = (welded.merged, data.points.len());
+            data.notes.push(format!("weld={tolerance}: {merged} points merged into others, {left} are left"));
+        }
+        Ok(data)
     })?;
     Ok(data.into())
 }

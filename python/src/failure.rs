@@ -1,9 +1,10 @@
 //! Errors of the libraries as exceptions of `hexfill.errors`, with the ids they are about.
 
+use crate::words::in_python;
 use hexfill::io::{FormatError, Place, Position, ReadError, WriteError};
 use hexfill::mesh::{HexMeshError, ImproperPair, Offenders, QuadId, SignatureError, SurfaceError, VertexId};
 use hexfill::unstable::enumerate::EnumerateError;
-use hexfill::{EmbedError, Existence, FillError, ProblemError, SimplifyError, ThreadsError};
+use hexfill::{EmbedError, Existence, FillError, ProblemError, RegionsError, SimplifyError, ThreadsError};
 use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -120,7 +121,7 @@ impl Failure {
             }
         }
         let class = py.import("hexfill.errors")?.getattr(self.class)?;
-        Ok(PyErr::from_value(class.call((self.message,), Some(&attributes))?))
+        Ok(PyErr::from_value(class.call((in_python(&self.message),), Some(&attributes))?))
     }
 }
 
@@ -150,7 +151,9 @@ impl From<ProblemError> for Failure {
         let message = error.to_string();
         match error {
             ProblemError::Read(error) => error.into(),
-            ProblemError::Surface { source, .. } => Self { message, ..source.into() },
+            ProblemError::Surface { source, .. } | ProblemError::Seams { source, .. } => {
+                Self { message, ..source.into() }
+            }
             ProblemError::NotFinite { points, .. } => {
                 Self::new("SurfaceError", message).vertices(&points.first).count(&points)
             }
@@ -170,6 +173,23 @@ impl From<FillError> for Failure {
             FillError::NoMesh(_) => none,
             FillError::Construct(_) => Self::not_found(message, "finished"),
             FillError::Refused { .. } => Self::internal(message),
+            _ => Self::input(message),
+        }
+    }
+}
+
+impl From<RegionsError> for Failure {
+    fn from(error: RegionsError) -> Self {
+        let message = error.to_string();
+        match error {
+            RegionsError::Open { edges, .. } => Self::new("SurfaceError", message).edges(&edges.first).count(&edges),
+            RegionsError::Baffle { quads, .. } => Self::new("SurfaceError", message).quads(&quads.first).count(&quads),
+            RegionsError::InsideOut { hexes, .. } => {
+                let first = hexes.first.iter().map(|h| h.0).collect();
+                Self::new("MeshError", message).with("hexes", Ids::One(first)).count(&hexes)
+            }
+            RegionsError::Fill { source, .. } => Self { message, ..source.into() },
+            RegionsError::DoNotFit { .. } => Self::not_found(message, "finished"),
             _ => Self::input(message),
         }
     }

@@ -1,15 +1,17 @@
 //! Verbs that make meshes: fill, embed, simplify. Each returns the mesh, a report as JSON, and whether Ctrl-C ended it.
 
 use crate::choices::choice;
-use crate::data::Data;
+use crate::data::{Data, ids};
 use crate::failure::Failure;
+use crate::words::in_python;
 use crate::work::{Run, limit, run};
 use hexfill::io::MeshData;
 use hexfill::{
     BoundaryLayers, CellChoice, Collapse, Context, Effort, EmbedOptions, FillOptions, FillReport, Objective,
-    PlaceOptions, Placed, Prefer, Problem, SimplifyOptions, StopReason, Strategy,
+    PlaceOptions, Placed, PlacedFill, Prefer, Problem, Region, SimplifyOptions, StopReason, Strategy,
 };
 use pyo3::prelude::*;
+use pyo3::types::PyBytes;
 use serde_json::{Value, json};
 use std::sync::Arc;
 
@@ -100,27 +102,93 @@ fn filled(
     fill: &FillOptions,
     ctx: &Context<'_>,
 ) -> Result<(MeshData, String), Failure> {
-    let problem = Problem::from_data(name, surface)?;
+    let problem = Problem::from_data(name, surface);
+    if surface.middles.is_empty() && hexfill::has_regions(surface, &problem) {
+        let found = hexfill::regions(name, surface)?;
+        if !found.is_empty() {
+            return regions_filled(surface, name, &found, options, fill, ctx);
+        }
+    }
+    let problem = problem?;
     let made = hexfill::fill_placed(&problem, fill, &options.placing(), ctx)?;
-    let stopped = made.stop;
     let Some((filled, placed)) = made.meshes.first() else {
-        let tried: Vec<String> = made.tried.iter().map(ToString::to_string).collect();
-        let tried = tried.join("; ");
-        let message = format!(
-            "no mesh was found within the bounds ({stopped}), which does not mean that none exists; tried: {tried}"
-        );
-        return Err(Failure::not_found(message, stopped.word()));
+        return Err(none_found("no mesh was found", &made));
     };
     let mut data = hexfill::mesh_data(&problem, filled.mesh(), placed.as_ref().map(|p| p.points().to_vec()));
     if let Some(placed) = placed.as_ref().filter(|_| options.embed) {
         placed.flag(&mut data);
     }
-    let mut report = json!(FillReport::new(&problem, filled, &made.tried));
-    report["geometry"] = json!(placed.as_ref().map(Placed::report));
-    report["stopped"] = json!(stopped);
+    filled.flag(&mut data);
+    let mut report = report(&problem, &made);
+    report["stopped"] = json!(made.stop);
     report["choice"] = json!(made.choice);
     report["notes"] = json!(problem.notes());
-    Ok((data, report.to_string()))
+    Ok((data, in_python(&report.to_string())))
+}
+
+/// Several regions with shared walls, or a void among hexes: each filled by itself, the whole returned.
+fn regions_filled(
+    surface: &MeshData,
+    name: &str,
+    found: &[Region],
+    options: &Filling,
+    fill: &FillOptions,
+    ctx: &Context<'_>,
+) -> Result<(MeshData, String), Failure> {
+    if options.best_of > 1 {
+        return Err(Failure::input(format!("{name} has {} regions; best_of is for one surface", found.len())));
+    }
+    let whole = hexfill::fill_regions(surface, found, fill, &options.placing(), ctx)?;
+    if let Some((i, made)) = whole.fills.iter().enumerate().find(|(_, made)| made.meshes.is_empty()) {
+        return Err(none_found(&format!("no mesh of region {} of {} was found", i + 1, found.len()), made));
+    }
+    let reports: Vec<Value> =
+        found.iter().zip(&whole.fills).map(|(region, made)| report(&region.problem, made)).collect();
+    let report = json!({
+        "regions": reports,
+        "hexes": whole.data.hexes.len(),
+        "given_invalid": whole.given_invalid,
+        "stopped": whole.stop,
+        "notes": surface.notes,
+    });
+    Ok((whole.data, in_python(&report.to_string())))
+}
+
+/// The numbers of the first mesh.
+fn report(problem: &Problem, made: &PlacedFill) -> Value {
+    let Some((filled, placed)) = made.meshes.first() else { return Value::Null };
+    let mut report = json!(FillReport::new(problem, filled, &made.tried));
+    report["geometry"] = json!(placed.as_ref().map(Placed::report));
+    report
+}
+
+fn none_found(what: &str, made: &PlacedFill) -> Failure {
+    let tried: Vec<String> = made.tried.iter().map(ToString::to_string).collect();
+    let (stopped, tried) = (made.stop, tried.join("; "));
+    let message = format!("{what} within the bounds ({stopped}), which does not mean that none exists; tried: {tried}");
+    Failure::not_found(message, stopped.word())
+}
+
+/// The regions of a surface with walls, or the voids among hexes: the surface of each, and its points in the whole.
+///
+/// # Errors
+/// `SurfaceError`, `MeshError`.
+#[pyfunction]
+pub(crate) fn regions<'py>(
+    py: Python<'py>,
+    data: &Data,
+    name: String,
+    how: Run,
+) -> PyResult<Vec<(Data, Bound<'py, PyBytes>)>> {
+    let data = Arc::clone(&data.0);
+    let (found, _) = run(py, how, move |_| Ok(hexfill::regions(&name, &data)?))?;
+    Ok(found.into_iter().map(|region| (region.problem.data().into(), ids(py, &region.points))).collect())
+}
+
+/// What makes hexes, in words: the numbers of the field `engine` are places in this list.
+#[pyfunction]
+pub(crate) fn engines() -> Vec<&'static str> {
+    hexfill::Maker::ALL.iter().map(|maker| maker.words()).collect()
 }
 
 /// The hexes of file data, or why there are none to work on.

@@ -2,6 +2,7 @@
 
 use crate::data::Data;
 use crate::failure::Failure;
+use crate::words::in_python;
 use crate::work::{Run, run};
 use hexfill::io::MeshData;
 use hexfill::mesh::{greedy_shelling, surface_signature};
@@ -36,7 +37,7 @@ pub(crate) fn info(py: Python<'_>, data: &Data, name: String, how: Run) -> PyRes
 #[pyfunction]
 pub(crate) fn doctor(py: Python<'_>, data: &Data, name: String, how: Run) -> PyResult<String> {
     let data = Arc::clone(&data.0);
-    let (text, _) = run(py, how, move |_| Ok(json!(hexfill::doctor(&name, &data)).to_string()))?;
+    let (text, _) = run(py, how, move |_| Ok(in_python(&json!(hexfill::doctor(&name, &data)).to_string())))?;
     Ok(text)
 }
 
@@ -46,7 +47,7 @@ pub(crate) fn mend(py: Python<'_>, data: &Data, name: String, refine: bool, how:
     let data = Arc::clone(&data.0);
     let (cured, _) =
         run(py, how, move |_| Ok(hexfill::cure(&name, &data, &CureOptions::default().with_refine(refine))))?;
-    Ok((cured.data.into(), cured.done))
+    Ok((cured.data.into(), cured.done.iter().map(|done| in_python(done)).collect()))
 }
 
 /// What the embedded atlas knows about a surface; JSON.

@@ -12,16 +12,17 @@ mod failure;
 mod filling;
 mod judging;
 mod knowing;
+mod words;
 mod work;
 
 #[pyo3::pymodule]
 mod _native {
     #[pymodule_export]
-    use crate::data::{Data, load, write};
+    use crate::data::{Data, load, prepared, write};
     #[pymodule_export]
     use crate::enumerating::enumerate;
     #[pymodule_export]
-    use crate::filling::{embed, fill, simplify};
+    use crate::filling::{embed, engines, fill, regions, simplify};
     #[pymodule_export]
     use crate::judging::check;
     #[pymodule_export]

@@ -36,7 +36,7 @@ fn names_of_groups_go_through_every_command_and_format() {
     std::fs::write(dir.path().join("in.obj"), GROUPS).unwrap();
     let due = names(&read_path(&dir.path().join("in.obj"), None).unwrap());
     assert_eq!(due[..3], [vec!["Box", "inlet"], vec!["Box", "outlet", "wall"], vec!["Box", "steel", "wall"]]);
-    for extension in ["msh", "msh4", "inp", "vtk", "vtu", "mesh", "ovm", "json"] {
+    for extension in ["msh", "msh4", "inp", "bdf", "unv", "vtk", "vtu", "mesh", "ovm", "json"] {
         let name = |stem: &str| format!("{stem}.{extension}");
         done(dir.path(), &["fill", "in.obj", "-o", &name("filled")]);
         done(dir.path(), &["embed", &name("filled"), "-o", &name("embedded")]);

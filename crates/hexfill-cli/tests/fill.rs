@@ -335,3 +335,53 @@ fn long_work_is_estimated_before_it_begins_and_the_estimate_holds() {
         assert!(code == 0 && !err.contains("estimate") && json(&out)["estimate"].is_null(), "{err}");
     }
 }
+
+/// The numbers of a field of the hexes in a JSON mesh.
+fn field(mesh: &serde_json::Value, name: &str) -> Vec<u64> {
+    mesh["hex_data"][name].as_array().unwrap().iter().map(|x| x.as_f64().unwrap() as u64).collect()
+}
+
+#[test]
+fn engine_and_layer_of_every_hex_are_written_and_agree_with_the_report() {
+    let dir = tempfile::tempdir().unwrap();
+    let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../corpus/surfaces");
+    let regions = corpus.join("three_regions.obj").to_str().unwrap().to_owned();
+    let makers: std::collections::BTreeMap<&str, u64> =
+        hexfill::Maker::ALL.iter().map(|m| (m.words(), u64::from(m.number()))).collect();
+    for args in [
+        &["fill", ":schneiders-pyramid"][..],
+        &["fill", ":schneiders-pyramid", "--strategy", "shell"],
+        &["fill", ":cube", "--strategy", "construct", "--no-embed"],
+        &["fill", ":cube", "--strategy", "construct", "--no-embed", "--time-limit", "1"],
+        &["fill", ":cube", "--layers", "3"],
+        &["fill", &regions],
+    ] {
+        let (_, out, err) = hexfill(dir.path(), &[args, &["-o", "m.json", "--json"]].concat());
+        let report = json(&out);
+        let mesh = json(&std::fs::read_to_string(dir.path().join("m.json")).unwrap());
+        let (engines, layers) = (field(&mesh, "engine"), field(&mesh, "layer"));
+        assert_eq!(engines.len(), mesh["hexes"].as_array().unwrap().len(), "{args:?}: {err}");
+        let mut counted = 0;
+        let meshes = report["meshes"].as_array().or_else(|| report["regions"].as_array()).unwrap();
+        let stages = || meshes.iter().flat_map(|m| m["stages"].as_array().unwrap());
+        for (name, number) in &makers {
+            let told: u64 = stages().filter(|s| s[0] == *name).map(|s| s[1].as_u64().unwrap()).sum();
+            assert_eq!(engines.iter().filter(|e| *e == number).count() as u64, told, "{args:?}: {name}");
+            counted += told;
+        }
+        assert_eq!(counted as usize, engines.len(), "{args:?}");
+        assert!(layers.contains(&1) && !layers.contains(&0), "{args:?}");
+        if args.contains(&"--layers") {
+            // Six quads with three layers over each, and one hex in the middle.
+            let in_layers = |layer: u64| layers.iter().filter(|l| **l == layer).count();
+            assert_eq!([1, 2, 3, 4].map(in_layers), [6, 6, 6, 1]);
+            let thin = engines.iter().zip(&layers).filter(|(e, _)| **e == makers["boundary layers"]);
+            assert!(thin.clone().count() == 18 && thin.clone().all(|(_, l)| *l <= 3));
+        }
+    }
+    let (code, _, err) = hexfill(dir.path(), &["view", "m.json", "-o", "m.html", "--field", "layer"]);
+    assert_eq!(code, 0, "{err}");
+    assert!(std::fs::read_to_string(dir.path().join("m.html")).unwrap().contains("\"layer\""));
+    let (code, _, err) = hexfill(dir.path(), &["view", "m.json", "-o", "m.png", "--field", "nothing"]);
+    assert!(code == 2 && err.contains("it has: certified_positive, scaled_jacobian, engine, layer"), "{err}");
+}

@@ -6,6 +6,7 @@
 
 use crate::error::WriteError;
 use crate::format::Format;
+use crate::formats::nastran;
 use hexfill_mesh::{HexMesh, HexMeshError, QuadSurface, SurfaceError};
 use std::collections::BTreeMap;
 
@@ -309,6 +310,8 @@ impl MeshData {
         lost(!self.point_data.is_empty() && !format.holds_data(), "data on points");
         lost(!self.quad_data.is_empty() && !format.holds_data(), "data on quads");
         lost(!self.hex_data.is_empty() && !format.holds_data(), "data on hexes");
+        let rounded = if format == Format::Nastran { nastran::rounded(self) } else { 0 };
+        lost(rounded > 0, &format!("all digits of {rounded} points: its fields have 16 characters"));
         losses
     }
 
@@ -392,6 +395,21 @@ impl MeshData {
             });
         }
         let mixed = self.tets.len() + self.wedges.len() + self.pyramids.len();
+        if format == Format::Unv && !self.pyramids.is_empty() {
+            return Err(WriteError::CannotHold {
+                format,
+                what: format!("{} pyramids", self.pyramids.len()),
+                remedy: "use .vtk, .vtu, .mesh or .msh".to_owned(),
+            });
+        }
+        // Fields of eight columns.
+        if format == Format::Nastran && self.points.len().max(self.face_count() + self.cell_count()) > 99_999_999 {
+            return Err(WriteError::CannotHold {
+                format,
+                what: "more than 99,999,999 points or elements".to_owned(),
+                remedy: "use .vtu".to_owned(),
+            });
+        }
         if format == Format::Json && mixed > 0 {
             return Err(WriteError::CannotHold {
                 format,

@@ -25,6 +25,10 @@ pub enum Format {
     Msh41,
     /// Abaqus and CalculiX input: surface and mesh.
     Inp,
+    /// Nastran bulk data: surface and mesh.
+    Nastran,
+    /// I-DEAS universal: surface and mesh.
+    Unv,
     /// OpenVolumeMesh ASCII: mesh.
     Ovm,
     /// JSON of hexes and boundary quads, coordinates optional.
@@ -98,7 +102,7 @@ impl Compression {
 }
 
 /// Extensions of formats that users try, what they hold, and what to do.
-const FOREIGN: [(&[&str], &str, &str); 7] = [
+const FOREIGN: [(&[&str], &str, &str); 6] = [
     (
         &["stl"],
         "STL holds triangles and",
@@ -110,11 +114,10 @@ const FOREIGN: [(&[&str], &str, &str); 7] = [
         "CAD geometry has no mesh and",
         "mesh its surface with quads (Gmsh with Mesh.RecombineAll=1) and save it as .msh or .vtk",
     ),
-    (&["unv"], "I-DEAS universal", "convert it with Gmsh (gmsh -save -format msh41) or meshio to .msh or .vtk"),
     (
-        &["bdf", "nas", "dat"],
-        "Nastran bulk data",
-        "convert it with Gmsh (gmsh -save -format msh41) or meshio to .msh or .vtk",
+        &["dat"],
+        "what .dat stands for is not known and",
+        "rename it (.bdf if it is Nastran), or name the format explicitly",
     ),
     (&["exo", "e", "ex2", "cgns", "med", "xdmf", "h5"], "this format", "convert it with meshio to .vtu or .msh"),
     (&["meshb", "ovmb"], "the binary flavour of this format", "save it as text (.mesh, .ovm)"),
@@ -123,7 +126,7 @@ const FOREIGN: [(&[&str], &str, &str); 7] = [
 
 impl Format {
     /// All formats, in the order of the documentation.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 13] = [
         Self::Obj,
         Self::Off,
         Self::Ply,
@@ -133,6 +136,8 @@ impl Format {
         Self::Msh22,
         Self::Msh41,
         Self::Inp,
+        Self::Nastran,
+        Self::Unv,
         Self::Ovm,
         Self::Json,
     ];
@@ -149,6 +154,8 @@ impl Format {
             Self::Msh22 => "msh22",
             Self::Msh41 => "msh41",
             Self::Inp => "inp",
+            Self::Nastran => "nastran",
+            Self::Unv => "unv",
             Self::Ovm => "ovm",
             Self::Json => "json",
         }
@@ -166,6 +173,8 @@ impl Format {
             Self::Msh22 => "Gmsh MSH 2.2",
             Self::Msh41 => "Gmsh MSH 4.1",
             Self::Inp => "Abaqus/CalculiX .inp",
+            Self::Nastran => "Nastran bulk data",
+            Self::Unv => "I-DEAS universal",
             Self::Ovm => "OpenVolumeMesh ASCII",
             Self::Json => "JSON",
         }
@@ -185,6 +194,8 @@ impl Format {
             Self::Msh22 => &["msh", "msh2"],
             Self::Msh41 => &["msh4"],
             Self::Inp => &["inp"],
+            Self::Nastran => &["bdf", "nas"],
+            Self::Unv => &["unv"],
             Self::Ovm => &["ovm"],
             Self::Json => &["json"],
         }
@@ -246,12 +257,12 @@ impl Format {
 
     /// Whether points keep their tags.
     pub fn holds_point_tags(self) -> bool {
-        !matches!(self, Self::Obj | Self::Off)
+        !matches!(self, Self::Obj | Self::Off | Self::Nastran)
     }
 
     /// Whether named numbers on points, quads and hexes are kept.
     pub fn holds_data(self) -> bool {
-        !matches!(self, Self::Obj | Self::Off | Self::Medit | Self::Inp)
+        !matches!(self, Self::Obj | Self::Off | Self::Medit | Self::Inp | Self::Nastran | Self::Unv)
     }
 
     /// Whether the format has a binary flavour that is written here.

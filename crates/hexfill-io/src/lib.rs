@@ -43,7 +43,7 @@ pub use format::{Compression, Format, FormatError};
 pub use save::{Encoding, check_path, write_path, write_path_with, write_to, write_to_with};
 pub use weld::{Weld, closing_tolerance, weld};
 
-use formats::{inp, json, medit, msh, obj, off, ovm, ply, vtk, vtu};
+use formats::{inp, json, medit, msh, nastran, obj, off, ovm, ply, unv, vtk, vtu};
 use source::Source;
 use std::fs::File;
 use std::io::Read;
@@ -106,6 +106,8 @@ pub fn read_from(reader: impl Read, format: Format, name: &str) -> Result<MeshDa
         Format::Medit => medit::read(source),
         Format::Msh22 | Format::Msh41 => msh::read(source),
         Format::Inp => inp::read(source),
+        Format::Nastran => nastran::read(source),
+        Format::Unv => unv::read(source),
         Format::Ovm => ovm::read(source),
         Format::Json => json::read(source),
     }?;

@@ -4,7 +4,7 @@ use crate::compress::Packer;
 use crate::data::MeshData;
 use crate::error::WriteError;
 use crate::format::{Compression, Format, FormatError};
-use crate::formats::{inp, json, medit, msh, obj, off, ovm, ply, vtk, vtu};
+use crate::formats::{inp, json, medit, msh, nastran, obj, off, ovm, ply, unv, vtk, vtu};
 use crate::write::check_tags;
 use std::fs;
 use std::io::{self, BufWriter, Write};
@@ -180,6 +180,8 @@ fn write_checked(out: &mut dyn Write, format: Format, data: &MeshData, encoding:
         Format::Msh22 => msh::write22(out, data),
         Format::Msh41 => msh::write41(out, data),
         Format::Inp => inp::write(out, data),
+        Format::Nastran => nastran::write(out, data),
+        Format::Unv => unv::write(out, data),
         Format::Ovm => ovm::write(out, data),
         Format::Json => json::write(out, data),
     }

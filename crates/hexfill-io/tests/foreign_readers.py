@@ -120,7 +120,7 @@ def gather(blocks, tags):
 
 def by_meshio(path):
     m = meshio.gmsh.read(path) if path.suffix == ".msh" else meshio.read(path)
-    name = next((n for n in ("tag", "gmsh:physical", "medit:ref") if n in m.cell_data), None)
+    name = next((n for n in ("tag", "gmsh:physical", "medit:ref", "nastran:ref") if n in m.cell_data), None)
     sets = {}
     if path.suffix == ".inp":
         # Element sets TAG_n: for each block the positions of its members.
@@ -180,7 +180,7 @@ def by_gmsh(path):
                     for cell in np.reshape(nodes, (-1, size)):
                         cells[int(kind)].append([where[int(n)] for n in cell])
                         tags[int(kind)].append(tag)
-        carried = path.suffix in (".msh", ".mesh")
+        carried = path.suffix in (".msh", ".mesh", ".bdf")
         points = np.reshape(coordinates, (-1, 3))
         return Mesh(points, cells[3], cells[5], tags[3] if carried else None, tags[5] if carried else None)
     finally:
@@ -258,6 +258,8 @@ READERS = {
     ".mesh": [by_meshio, by_gmsh],
     ".msh": [by_meshio, by_gmsh],
     ".inp": [by_meshio],  # Gmsh writes it only
+    ".bdf": [by_meshio, by_gmsh],
+    ".unv": [by_gmsh],
     ".ovm": [by_definition_of_ovm],
     ".json": [by_json],
 }
@@ -274,6 +276,8 @@ def check(directory):
                 continue  # Gmsh reads no binary VTK of version 3.0
             # meshio and PyVista keep PLY (and VTK keeps OBJ) in single precision in some versions.
             tolerance = 1e-6 if path.suffix in (".ply", ".obj") else 0.0
+            if path.suffix == ".bdf":
+                tolerance = 1e-11  # fields of 16 characters
             found = reader(path)
             surface_format = path.suffix in (".obj", ".off", ".ply")
             if path.name.startswith("named-"):
@@ -407,6 +411,13 @@ def write_meshio(directory, due):
             yield name, "exact" if binary else "single", tags_kept, "both"
     meshio.write(directory / "meshio.inp", full["plain"])
     yield "meshio.inp", "single", "notags", "both"
+    meshio.write(directory / "meshio.bdf", full["plain"])
+    yield "meshio.bdf", "single", "notags", "both"
+    # meshio 5.3.5 fails on cells between commas.
+    for kind, cells_as in [("fixed-small", "fixed-small"), ("fixed-large", "fixed-large"), ("free", "fixed-small")]:
+        name = f"meshio-{kind}.nas"
+        meshio.nastran.write(directory / name, full["plain"], point_format=kind, cell_format=cells_as)
+        yield name, "single", "notags", "both"
     meshio.write(directory / "meshio.obj", surface)
     yield "meshio.obj", "single", "notags", "quads"
     for binary in (True, False):
@@ -430,7 +441,7 @@ def write_quadratic(directory, due):
     quads = [q + [between(q[a], q[b]) for a, b in quad_edges] for q in due.quads]
     hexes = [h + [between(h[a], h[b]) for a, b in hex_edges] for h in due.hexes]
     mesh = meshio.Mesh(np.array(points), [("quad8", np.array(quads)), ("hexahedron20", np.array(hexes))])
-    for name, file_format in [("vtu", "vtu"), ("vtk", "vtk42"), ("msh", "gmsh22"), ("inp", "abaqus")]:
+    for name, file_format in [("vtu", "vtu"), ("vtk", "vtk42"), ("msh", "gmsh22"), ("inp", "abaqus"), ("bdf", "nastran")]:
         name = f"quadratic-meshio.{name}"
         meshio.write(directory / name, mesh, file_format=file_format)
         yield name, "single", "notags", "both"
@@ -447,8 +458,9 @@ def write_quadratic(directory, due):
                 name = f"quadratic-gmsh-{version}-{'binary' if binary else 'ascii'}.msh"
                 gmsh.write(name)
                 yield name, "single", "notags", "both"
-        gmsh.write("quadratic-gmsh.inp")
-        yield "quadratic-gmsh.inp", "single", "notags", "both"
+        for name in ("quadratic-gmsh.inp", "quadratic-gmsh.bdf"):
+            gmsh.write(name)
+            yield name, "single", "notags", "both"
     finally:
         gmsh.finalize()
 
@@ -542,7 +554,13 @@ def write_gmsh(directory, due):
             gmsh.write(name)
             yield name, "single", "notags", "both"
         gmsh.option.setNumber("Mesh.Binary", 0)
-        for name, cells in [("gmsh.mesh", "both"), ("gmsh.inp", "both"), ("gmsh.off", "quads")]:
+        for name, cells in [
+            ("gmsh.mesh", "both"),
+            ("gmsh.inp", "both"),
+            ("gmsh.unv", "both"),
+            ("gmsh.bdf", "both"),
+            ("gmsh.off", "quads"),
+        ]:
             gmsh.write(name)
             yield name, "single", "notags", cells
     finally:

@@ -57,7 +57,7 @@ fn truncated_files_are_refused_at_every_line() {
                         hexes
                     };
                     let attributes_cut = part.quads == mesh.quads && sets(&part) == sets(&mesh);
-                    let uncounted = matches!(format, Format::Obj | Format::Inp);
+                    let uncounted = matches!(format, Format::Obj | Format::Inp | Format::Nastran | Format::Unv);
                     assert!(told || attributes_cut || uncounted, "{format} cut at byte {end}: {part:?}");
                 }
             }
@@ -371,4 +371,65 @@ fn what_a_format_cannot_hold_is_refused_and_the_old_file_stays() {
     refuse(&mesh, Format::Vtk, Encoding::Text, &["index 12", "12 points"]);
     assert_eq!(common::mixed().losses(Format::Obj).len(), 0);
     assert_eq!(common::chiral().losses(Format::Off).len(), 2);
+}
+
+#[test]
+fn nastran_says_what_is_wrong() {
+    let grids = "BEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,1.,1.,0.\nGRID,4,,0.,1.,0.\n";
+    let with = |cards: &str| format!("{grids}{cards}ENDDATA\n");
+    let f = Format::Nastran;
+    says(f, with("CQUAD4,1,1,1,2,3,9\n"), &["in.file:6: ", "9, which none has", "add the GRID"]);
+    says(f, with("CQUAD4,1,1,1,2,3\n"), &["in.file:6: ", "the number of a point", "nothing"]);
+    says(f, with("CQUAD4  one     1       1       2       3       4\n"), &["in.file:6: ", "`one`", "8 columns"]);
+    says(f, with("GRID,5,2,0.,0.,1.\n"), &["in.file:6: ", "coordinate system 2", "basic"]);
+    says(f, with("GRDSET,,7\n"), &["in.file:6: ", "coordinate system 7"]);
+    says(f, with("GRID,4,,0.,2.,0.\n"), &["in.file:6: ", "4 twice"]);
+    says(f, with("GRID,5,,0.,1.x,0.\n"), &["in.file:6: ", "coordinate y", "`1.x`"]);
+    says(f, with("GRID,5,,0.,nan,0.\n"), &["in.file:6: ", "y is nan", "finite"]);
+    says(f, with("INCLUDE 'other.bdf'\n"), &["in.file:6: ", "INCLUDE", "paste"]);
+    says(f, "CEND\nBEGIN BULK\nENDDATA\n", &["GRID", "found none"]);
+    says(f, "solid thing\n", &["in.file:1: ", "such as GRID", "extension"]);
+}
+
+#[test]
+fn nastran_in_all_its_forms() {
+    // A cube: small fields, wide ones, commas, tabs; continuations of each; numbers without the letter of the exponent.
+    let text = "SOL 101\nCEND\nTITLE = cube\nBEGIN BULK\n$HMNAME COMP                   7\"skin\"\n$ANSA_NAME_COMMENT;9;PSOLID;core;\n\
+                CHEXA   5       9       1       2       3       4       5       6       +A\n+A      7       8\n\
+                GRID    1               0.0     0.      0.\nGRID*   2                               1.0             0.\n*       0.\n\
+                grid,3,,10.-1,+1.D+0,,\nGRID,4,,0.,\n,1.\nGRID\t5\t\t0.\t0.\t1.\n\
+                GRID*,6,,1.,0.,\n*,1.\nGRID,7,0,1.,1.,1.,0\nGRID    8               0.0     1.0     .1+1    $ the last\n\
+                CQUAD4,1,7,1,4,3,2,0.0\nCQUAD8,2,7,5,6,7,8,1,2,\n+,3,4\nCTRIA3,3,7,1,2,3\nCBAR,4,1,1,2\nSPC1,1,123456,1,THRU,8\n\
+                PSHELL,7,1,.1\nENDDATA\nGRID,1,,9.,9.,9.\n";
+    let text = text.replace("GRID,4,,0.,\n,1.", "GRID,4,,0.,1.");
+    let mesh = read_from(text.as_bytes(), Format::Nastran, "n").unwrap();
+    let cube = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]];
+    assert_eq!(mesh.points, cube.map(|p| p.map(f64::from)));
+    assert_eq!(
+        (mesh.hexes.as_slice(), mesh.hex_tags.as_deref()),
+        ([[0, 1, 2, 3, 4, 5, 6, 7]].as_slice(), Some(&[9][..]))
+    );
+    assert_eq!(mesh.quads, [[0, 3, 2, 1], [4, 5, 6, 7]]);
+    assert_eq!((mesh.quad_tags, mesh.other_faces.len()), (Some(vec![7, 7]), 1));
+    let names: Vec<(i64, &str)> = mesh.tag_names.iter().map(|n| (n.tag, n.name.as_str())).collect();
+    assert_eq!(names, [(7, "skin"), (9, "core")]);
+    assert!(mesh.notes.iter().any(|n| n.contains("1 elements of type CBAR")), "{:?}", mesh.notes);
+}
+
+#[test]
+fn universal_files_say_what_is_wrong() {
+    let f = Format::Unv;
+    let nodes = "    -1\n  2411\n 1 1 1 11\n 0. 0. 0.\n 2 1 1 11\n 1. 0. 0.\n 3 0 1 11\n 1. 1.D0 0.\n    -1\n";
+    let with = |more: &str| format!("{nodes}    -1\n  2412\n{more}    -1\n");
+    says(f, with(" 1 91 1 1 7 3\n 1 2 4\n"), &["in.file:12: ", "4, which none has", "add the node"]);
+    says(f, with(" 1 91 1 1 7 4\n 1 2 3 1\n"), &["in.file:12: ", "3 nodes of an element of type 91", "4"]);
+    says(f, with(" 1 91 1 1 7 3\n 1 2\n"), &["in.file:14: ", "the nodes of an element", "end of the dataset"]);
+    says(f, nodes.replace("3 0 1 11", "3 5 1 11"), &["in.file:7: ", "coordinate system 5"]);
+    says(f, nodes.replace("3 0 1 11", "2 0 1 11"), &["in.file:8: ", "2 twice"]);
+    says(f, nodes.replace("1.D0", "inf"), &["in.file:8: ", "y is inf"]);
+    says(f, "    -1\n  2411\n 1 1 1 11\n 0. 0. 0.\n", &["ends too early", "`-1`"]);
+    says(f, "    -1\n   151\n hello\n    -1\n", &["2411", "found none"]);
+    says(f, "solid thing\n", &["in.file:1: ", "a line `-1`", "extension"]);
+    let group = " 1 0 0 0 0 0 0 2\nwall\n 8 1 0 0\n";
+    says(f, format!("{nodes}    -1\n  2467\n{group}    -1\n"), &["in.file:15: ", "members of a group"]);
 }

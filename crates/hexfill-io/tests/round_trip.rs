@@ -9,9 +9,22 @@ use proptest::prelude::*;
 fn round_trip(mesh: &MeshData, format: Format, encoding: Encoding) -> MeshData {
     let mut file = Vec::new();
     write_to_with(&mut file, format, mesh, encoding).unwrap_or_else(|e| panic!("{format}: {e}"));
-    read_from(file.as_slice(), format, &format!("test.{format}")).unwrap_or_else(|e| {
+    let mut back = read_from(file.as_slice(), format, &format!("test.{format}")).unwrap_or_else(|e| {
         panic!("{e}\n{}", String::from_utf8_lossy(&file[..file.len().min(3000)]));
-    })
+    });
+    if format == Format::Nastran {
+        // Fields of 16 characters; that digits are lost is said.
+        assert_eq!(back.points.len(), mesh.points.len());
+        let mut rounded = 0;
+        for (p, q) in back.points.iter_mut().zip(&mesh.points) {
+            assert!(p.iter().zip(q).all(|(x, y)| (x - y).abs() <= 1e-8 * y.abs()), "{p:?} {q:?}");
+            rounded += usize::from(p.map(f64::to_bits) != q.map(f64::to_bits));
+            *p = *q;
+        }
+        let said = mesh.losses(format).iter().any(|loss| loss.contains(&format!("digits of {rounded} points")));
+        assert!(said || rounded == 0);
+    }
+    back
 }
 
 fn flavours() -> Vec<(Format, Encoding)> {
@@ -36,7 +49,8 @@ fn names_of_groups_come_back() {
         if matches!(format, Format::Msh22 | Format::Msh41) {
             mesh.tag_names.retain(|n| n.on != TagOn::Points); // Gmsh has no groups of single nodes
         }
-        let lost = mesh.losses(format);
+        let mut lost = mesh.losses(format);
+        lost.retain(|loss| !loss.contains("digits of"));
         assert!(lost.is_empty(), "{format}: {lost:?}");
         let mut back = with_any_first_corner(round_trip(&mesh, format, encoding), format);
         if format == Format::Msh22 {
@@ -71,6 +85,9 @@ fn all_kinds_of_cells_and_faces() {
         let mut mesh = without_what_is_not_held(mixed(), format);
         if !format.holds_cells() {
             mesh = mesh.surface_only();
+        }
+        if format == Format::Unv {
+            mesh.pyramids.clear();
         }
         if format == Format::Json {
             (mesh.tets, mesh.wedges, mesh.pyramids) = Default::default();
@@ -111,7 +128,10 @@ fn compressed_files_in_a_directory() {
     for (format, encoding) in flavours() {
         for packing in ["", ".gz", ".zst", ".GZ"] {
             let path = directory.join(format!("mesh.{}{packing}", format.extensions()[0]));
-            let mesh = chiral_for(format);
+            let mut mesh = chiral_for(format);
+            if format == Format::Nastran {
+                mesh.points[7][2] = 1.25; // in 16 characters
+            }
             write_path_with(&path, Some(format), &mesh, encoding).unwrap();
             let first = std::fs::read(&path).unwrap();
             let magic: &[u8] = match packing {

@@ -49,15 +49,16 @@ impl BoundaryLayers {
 }
 
 /// Cuts the layer of hexes under the surface. `None` if some hex there is not in a pillow, so that a cut would reach the surface.
-/// Surface vertices keep their ids; `points` are those of all vertices of the mesh, and so are the returned ones.
+/// Surface vertices keep their ids; `points` are those of all vertices of the mesh, and so are the returned ones. Last come per hex the one that it is, or `None` for a
+/// piece of one that was cut.
 pub fn cut_boundary_layers(
     mesh: &HexMesh,
     surface: &QuadSurface,
     points: &[[f64; 3]],
     layers: &BoundaryLayers,
-) -> Option<(HexMesh, Vec<[f64; 3]>)> {
+) -> Option<(HexMesh, Vec<[f64; 3]>, Vec<Option<u32>>)> {
     if layers.cells() <= 1 {
-        return Some((mesh.clone(), points.to_vec()));
+        return Some((mesh.clone(), points.to_vec(), (0..mesh.n_hexes() as u32).map(Some).collect()));
     }
     let n_surface = surface.n_vertices() as u32;
     let hexes = mesh.hexes_raw();
@@ -81,8 +82,8 @@ pub fn cut_boundary_layers(
     let wanted = vec![2.0; 4 * surface.n_quads()];
     let mut lattice = Lattice::new(&uncompressed(surface, &wanted), n_surface);
     let mut at: Vec<[f64; 3]> = points[..n_surface as usize].to_vec();
-    let mut cut = Vec::new();
-    for hex in &hexes {
+    let (mut cut, mut origin) = (Vec::new(), Vec::new());
+    for (h, hex) in (0..).zip(&hexes) {
         let sizes =
             AXES.map(|[i, j]| if is_cut[classes.of[&key(hex[i], hex[j])] as usize] { layers.cells() } else { 1 });
         let [a, b, c] = sizes.map(|s| s as usize);
@@ -106,6 +107,8 @@ pub fn cut_boundary_layers(
             }
         }
         blend_block(&ids, sizes, &mut at);
+        let n_pieces = a * b * c;
+        origin.extend(std::iter::repeat_n((n_pieces == 1).then_some(h), n_pieces));
         for k in 0..c {
             for j in 0..b {
                 for i in 0..a {
@@ -115,7 +118,7 @@ pub fn cut_boundary_layers(
         }
     }
     let mesh = HexMesh::try_new(lattice.n_vertices() as usize, &cut).ok()?;
-    Some((mesh, at))
+    Some((mesh, at, origin))
 }
 
 /// The outer end of every edge that is cut: the one on the surface, and for edges without one the end that corresponds to it.
@@ -187,9 +190,10 @@ mod tests {
         let (surface, mesh, points) = pillowed_box();
         for (height, cells) in [(None, 3), (Some(0.01), 4)] {
             let layers = BoundaryLayers { count: 3, height, growth: 1.5 };
-            let (cut, at) = cut_boundary_layers(&mesh, &surface, &points, &layers).unwrap();
+            let (cut, at, origin) = cut_boundary_layers(&mesh, &surface, &points, &layers).unwrap();
             assert_eq!(cut.n_hexes(), mesh.n_hexes() + (cells - 1) * surface.n_quads());
             assert_eq!(at.len(), cut.n_vertices());
+            assert_eq!(origin.iter().filter(|o| o.is_none()).count(), cells * surface.n_quads());
             assert_eq!(&at[..surface.n_vertices()], &points[..surface.n_vertices()]);
             assert!(at.iter().flatten().all(|x| x.is_finite()));
             let hexes = cut.hexes_raw();

@@ -7,7 +7,8 @@ use hexfill_io::{MeshData, TagName, TagOn, WriteError};
 use hexfill_mesh::HexMesh;
 use std::path::Path;
 
-/// Writes a mesh with its positions and, if they were judged, two numbers per hex (`certified_positive`, `scaled_jacobian`). The format follows from
+/// Writes a mesh with its positions and numbers per hex: `engine` and `layer` ([`Filled::flag`]) and, if positions were judged, `certified_positive` and
+/// `scaled_jacobian` ([`Placed::flag`]). The format follows from
 /// the extension; the file appears whole or not at all.
 ///
 /// # Errors
@@ -17,6 +18,7 @@ pub fn save(path: &Path, problem: &Problem, filled: &Filled, placed: Option<&Pla
     if let Some(placed) = placed.filter(|p| !p.cells.is_empty()) {
         placed.flag(&mut data);
     }
+    filled.flag(&mut data);
     hexfill_io::write_path(path, None, &data)
 }
 

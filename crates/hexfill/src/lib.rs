@@ -90,6 +90,7 @@ pub use fill::attempt::Attempt;
 pub use fill::error::{FillError, check_fillable};
 pub use fill::fill;
 pub use fill::filled::{FillResult, Filled, Route};
+pub use fill::maker::Maker;
 pub use fill::options::{Effort, FillOptions, InteriorFrom, Prefer, Strategy};
 pub use hexfill_check::{CellQuality, Level, Options as CheckOptions, Report as CheckReport, Rules};
 pub use hexfill_construct::{CellChoice, ConstructError, Existence, GivenTets, MissingInterior, TetgenTets, existence};

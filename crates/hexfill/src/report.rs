@@ -2,6 +2,7 @@
 
 use crate::fill::attempt::Attempt;
 use crate::fill::filled::{Filled, Route};
+use crate::fill::maker::Maker;
 use crate::problem::Problem;
 use hexfill_mesh::{hex_signature, sheets};
 use serde::Serialize;
@@ -33,8 +34,8 @@ pub struct FillReport {
     pub sheets: Option<usize>,
     /// How it was found.
     pub route: Route,
-    /// What made how many of the hexes, in the order of the work, where more than one step did.
-    pub stages: Vec<(&'static str, usize)>,
+    /// What made how many of the hexes.
+    pub stages: Vec<(Maker, usize)>,
     /// Canonical signature of the mesh, for meshes of at most 10,000 hexes.
     pub signature: Option<String>,
     /// What was tried.
@@ -53,7 +54,7 @@ impl FillReport {
             interior_vertices: filled.mesh.n_interior_vertices(),
             sheets: (hexes <= 1_000_000).then(|| sheets(&filled.mesh).len()),
             route: filled.route,
-            stages: filled.stages.clone(),
+            stages: filled.stages(),
             signature: (hexes <= 10_000).then(|| hex_signature(&filled.mesh).ok()).flatten(),
             tried: tried.to_vec(),
         }

@@ -4,7 +4,7 @@ use crate::console::Console;
 use crate::exit::Exit;
 use crate::files;
 use anyhow::bail;
-use hexfill::io::Format;
+use hexfill::io::{Format, MeshData};
 use hexfill::mesh::{HexId, HexMesh, greedy_shelling};
 use hexfill::unstable::view::ViewInput;
 use std::io::Write;
@@ -20,6 +20,9 @@ pub(crate) struct ViewArgs {
     /// Format of the mesh.
     #[arg(long, value_name = "FORMAT", value_parser = files::parse_format)]
     from: Option<Format>,
+    /// Colour by this field of the hexes, such as layer or engine [default: the certified scaled Jacobian].
+    #[arg(long, value_name = "FIELD")]
+    field: Option<String>,
     /// Title of the page [default: the name of its file].
     #[arg(long)]
     title: Option<String>,
@@ -39,17 +42,11 @@ pub(crate) fn run(args: &ViewArgs, console: &Console) -> anyhow::Result<Exit> {
         bail!("{} has no coordinates; compute them first or give a file that has", args.mesh);
     }
     let mesh = HexMesh::try_new(data.points.len(), &data.hexes)?;
-    let judged =
-        hexfill::unstable::check::Judged::connectivity(data.points.len(), &data.hexes).with_points(&data.points);
-    let scaled_jacobians = hexfill::unstable::check::cell_quality(&judged)
-        .iter()
-        .map(|c| c.as_ref().map_or(f64::NAN, |c| c.certified_lower))
-        .collect();
     let shown = Shown {
         title: args.title.as_deref().unwrap_or_else(|| files::short_name(&args.mesh)),
         points: &data.points,
         mesh: &mesh,
-        scaled_jacobians: Some(scaled_jacobians),
+        values: Some(colours(args, &data)?),
         facts: Vec::new(),
     };
     if args.output.to_ascii_lowercase().ends_with(".png") {
@@ -64,6 +61,28 @@ pub(crate) fn run(args: &ViewArgs, console: &Console) -> anyhow::Result<Exit> {
     Ok(Exit::Done)
 }
 
+/// What hexes are coloured by.
+fn colours(args: &ViewArgs, data: &MeshData) -> anyhow::Result<(String, Vec<f64>)> {
+    let Some(name) = &args.field else {
+        let judged =
+            hexfill::unstable::check::Judged::connectivity(data.points.len(), &data.hexes).with_points(&data.points);
+        let quality = hexfill::unstable::check::cell_quality(&judged);
+        let bounds = quality.iter().map(|c| c.as_ref().map_or(f64::NAN, |c| c.certified_lower)).collect();
+        return Ok((QUALITY.to_owned(), bounds));
+    };
+    match data.hex_data.iter().find(|(field, _)| field == name) {
+        Some(found) => Ok(found.clone()),
+        None => {
+            let known: Vec<&str> = data.hex_data.iter().map(|(field, _)| field.as_str()).collect();
+            let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
+            bail!("{} has no field {name} on its hexes; it has: {known}", args.mesh)
+        }
+    }
+}
+
+/// What certified scaled Jacobians are called in pages.
+const QUALITY: &str = "scaled Jacobian";
+
 /// Shelling orders are looked for in meshes up to this size: the animation of more hexes shows nothing.
 const SHELLING_LIMIT: usize = 20_000;
 
@@ -72,19 +91,24 @@ pub(crate) struct Shown<'a> {
     pub title: &'a str,
     pub points: &'a [[f64; 3]],
     pub mesh: &'a HexMesh,
-    /// Certified scaled Jacobian per hex.
-    pub scaled_jacobians: Option<Vec<f64>>,
+    /// What hexes are coloured by: its name, and a number per hex.
+    pub values: Option<(String, Vec<f64>)>,
     /// Further lines of the legend: what and how much.
     pub facts: Vec<(String, String)>,
 }
 
 impl Shown<'_> {
+    /// Colours by certified scaled Jacobians.
+    pub(crate) fn by_quality(values: Vec<f64>) -> Option<(String, Vec<f64>)> {
+        Some((QUALITY.to_owned(), values))
+    }
+
     fn input<'b>(&'b self, shelling: Option<&'b [HexId]>) -> ViewInput<'b> {
         ViewInput {
             title: self.title,
             points: self.points,
             mesh: self.mesh,
-            hex_values: self.scaled_jacobians.as_deref().map(|v| ("scaled Jacobian", v)),
+            hex_values: self.values.as_ref().map(|(name, values)| (name.as_str(), values.as_slice())),
             shelling,
             facts: &self.facts,
         }

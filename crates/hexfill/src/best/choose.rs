@@ -16,6 +16,7 @@ use crate::fill::error::FillError;
 use crate::fill::filled::{FillResult, Filled, Route};
 use crate::fill::judged::verify;
 use crate::fill::last_resort::{LastResort, leaving_time};
+use crate::fill::maker::Maker;
 use crate::fill::options::{Effort, FillOptions, Prefer, Strategy};
 use crate::fill::search::search;
 use crate::fill::shelled::shelled;
@@ -26,7 +27,7 @@ use crate::problem::Problem;
 use crate::simplify::carried_positions;
 use hexfill_embed::quick_star_bound;
 use hexfill_lay::lay;
-use hexfill_mesh::{Context, StopReason, VertexId, hex_isomorphism};
+use hexfill_mesh::{Context, HexMesh, StopReason, VertexId, hex_isomorphism};
 use hexfill_search::MAX_QUADS;
 use hexfill_shell::{Layer, SplitOptions, cut_boundary_layers, split_stars};
 
@@ -251,12 +252,10 @@ impl<'a> Trial<'a> {
         let Some(Tangled { filled, points, .. }) = self.tangled.take() else { return Ok(()) };
         let made = with_pillows(&filled.mesh, &points, surface, limits, &self.early);
         self.result.tried.push(Attempt::Pillows { found: made.is_some() });
-        let Some((mesh, points)) = made.filter(|(mesh, _)| mesh.n_hexes() as u64 <= u64::from(self.options.max_hexes))
-        else {
-            return Ok(());
-        };
+        let is_small = |mesh: &HexMesh| mesh.n_hexes() as u64 <= u64::from(self.options.max_hexes);
+        let Some((mesh, points, origin)) = made.filter(|(mesh, ..)| is_small(mesh)) else { return Ok(()) };
         verify(surface, &mesh, filled.route)?;
-        let pillowed = Filled { start: Some(points), ..filled.changed("pillows between", mesh) };
+        let pillowed = Filled { start: Some(points), ..filled.remade(Maker::PillowsBetween, mesh, &origin) };
         self.consider_from(pillowed, false)
     }
 
@@ -345,7 +344,7 @@ impl<'a> Trial<'a> {
             (pillow.below, pillow.layer) = (-1.0, Layer::Always);
             let Some(pillowed) = split_stars(&filled.mesh, self.boundary, &pillow, self.ctx) else { return Ok(()) };
             verify(&self.problem.surface, &pillowed.mesh, filled.route)?;
-            filled = filled.changed("pillow", pillowed.mesh);
+            filled = filled.changed(Maker::Pillows, pillowed.mesh);
         }
         let is_shelled = filled.route == Route::Shelling;
         if is_shelled {
@@ -435,7 +434,7 @@ impl<'a> Trial<'a> {
             return Ok(None);
         }
         verify(&self.problem.surface, &split.mesh, filled.route)?;
-        let mut made = filled.changed("split stars", split.mesh);
+        let mut made = filled.changed(Maker::SplitStars, split.mesh);
         // These start from positions of their own.
         let is_placed = matches!(filled.route, Route::Laying | Route::Construction);
         let start = filled.start.as_ref().filter(|_| is_placed);
@@ -474,7 +473,7 @@ impl<'a> Trial<'a> {
     fn cut_layers(&mut self) -> Result<Option<u32>, FillError> {
         let (Some(layers), Some((_, filled, placed))) = (self.options.layers, &mut self.best) else { return Ok(None) };
         let surface = &self.problem.surface;
-        let Some((mesh, points)) = cut_boundary_layers(&filled.mesh, surface, &placed.points, &layers) else {
+        let Some((mesh, points, origin)) = cut_boundary_layers(&filled.mesh, surface, &placed.points, &layers) else {
             return Err(FillError::NotForStrategy {
                 what: "no mesh with a layer of one hexahedron under every quad was found, so there is nothing to cut into boundary layers"
                     .to_owned(),
@@ -482,7 +481,7 @@ impl<'a> Trial<'a> {
             });
         };
         verify(surface, &mesh, filled.route)?;
-        *filled = filled.changed("boundary layers", mesh);
+        *filled = filled.remade(Maker::BoundaryLayers, mesh, &origin);
         *placed = Placed::judged(&filled.mesh, self.boundary, points, placed.embedding.take(), None);
         Ok(Some(layers.count))
     }

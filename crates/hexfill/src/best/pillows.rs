@@ -43,6 +43,8 @@ const MOST_STALE: u32 = 30;
 #[derive(Clone)]
 struct Stage {
     hexes: Vec<[u32; 8]>,
+    /// Per hex which one of the mesh it was; `None` for those of pillows.
+    origin: Vec<Option<u32>>,
     points: Vec<Vector>,
     /// Hexes with a corner that is not positive; if there are none, those that are not valid for another reason.
     bad: Vec<usize>,
@@ -50,7 +52,7 @@ struct Stage {
     score: f64,
 }
 
-/// The mesh with pillows at valid positions; `None` if the search ends before it finds one. `points` are where the embedding of the mesh failed; the first
+/// The mesh with pillows at valid positions, and per hex which one it was, if any; `None` if the search ends before it finds one. `points` are where the embedding of the mesh failed; the first
 /// `n_surface` vertices are those of the surface and stay.
 pub(crate) fn with_pillows(
     mesh: &HexMesh,
@@ -58,10 +60,11 @@ pub(crate) fn with_pillows(
     surface: &QuadSurface,
     limits: PillowLimits,
     ctx: &Context<'_>,
-) -> Option<(HexMesh, Vec<Vector>)> {
+) -> Option<(HexMesh, Vec<Vector>, Vec<Option<u32>>)> {
     let n_quads = surface.n_quads() as f64;
     let cost = |stage: &Stage| stage.score + HEX_COST * stage.hexes.len() as f64 / n_quads;
-    let start = Stage { hexes: mesh.hexes_raw(), points: points.to_vec(), bad: Vec::new(), score: 0.0 };
+    let origin = (0..mesh.n_hexes() as u32).map(Some).collect();
+    let start = Stage { hexes: mesh.hexes_raw(), origin, points: points.to_vec(), bad: Vec::new(), score: 0.0 };
     let mut best = start.untangled(THOROUGH, ctx)?;
     let most_hexes = (limits.most * n_quads) as usize;
     let mut random = Random::new(ctx.seed);
@@ -96,7 +99,7 @@ pub(crate) fn with_pillows(
         }
     }
     let mesh = HexMesh::try_new(best.points.len(), &best.hexes).ok()?;
-    Some((mesh, best.points))
+    Some((mesh, best.points, best.origin))
 }
 
 impl Stage {
@@ -157,12 +160,14 @@ impl Stage {
         let first = *set.first()? as usize;
         let Pillowed { mut hexes, copied } = pillow(self.points.len(), &self.hexes, &set)?;
         let sheet = hexes.split_off(self.hexes.len());
+        let mut origin = self.origin.clone();
+        origin.splice(first..first, sheet.iter().map(|_| None));
         hexes.splice(first..first, sheet);
         let mut points = self.points.clone();
         points.extend(copied.iter().map(|&v| self.points[v as usize]));
         // Copies lie on their originals, and a sheet without volume gives untangling nothing to start from.
         draw_apart(&hexes, &mut points, self.points.len());
-        Some(Self { hexes, points, bad: Vec::new(), score: 0.0 })
+        Some(Self { hexes, origin, points, bad: Vec::new(), score: 0.0 })
     }
 }
 
@@ -218,7 +223,10 @@ mod tests {
         let mesh = HexMesh::try_new(points.len(), &hexes).unwrap();
         let quads: Vec<[u32; 4]> = mesh.boundary_quads_raw();
         let surface = QuadSurface::try_new(points.len(), &quads).unwrap();
-        (Stage { hexes, points, bad: vec![0], score: 0.0 }, surface)
+        (
+            Stage { origin: (0..hexes.len() as u32).map(Some).collect(), hexes, points, bad: vec![0], score: 0.0 },
+            surface,
+        )
     }
 
     #[test]
@@ -233,6 +241,7 @@ mod tests {
             assert_eq!(made.hexes.len(), 64 + more);
             let mesh = HexMesh::try_new(made.points.len(), &made.hexes).unwrap();
             verify(&surface, &mesh, Route::Shelling).unwrap();
+            assert_eq!(made.origin.iter().flatten().copied().collect::<Vec<u32>>(), (0..64).collect::<Vec<u32>>());
             // Each new vertex is drawn into what it bounds: the pillow has a height.
             assert!(made.hexes.iter().all(|hex| worst_corner(hex, &made.points) > 0.0));
         }
@@ -248,7 +257,7 @@ mod tests {
         let mut points = stage.points.clone();
         points[13] = [1.9, 1.9, 2.5];
         let limits = PillowLimits { trials: 10, most: 4.0, most_bad: 8 };
-        let (made, at) = with_pillows(&mesh, &points, &surface, limits, &Context::default()).unwrap();
+        let (made, at, _) = with_pillows(&mesh, &points, &surface, limits, &Context::default()).unwrap();
         assert_eq!(made.n_hexes(), 8);
         assert!(made.hexes_raw().iter().all(|hex| worst_corner(hex, &at) > 0.0));
     }

@@ -20,7 +20,7 @@ pub(crate) fn fill_apart(
 ) -> Result<FillResult, FillError> {
     let mut result = FillResult::new();
     let one = FillOptions { count: 1, growth_log: None, ..options.clone() };
-    let mut hexes = Vec::new();
+    let (mut hexes, mut makers) = (Vec::new(), Vec::new());
     let mut n_vertices = problem.surface.n_vertices() as u32;
     let mut route = Route::Atlas;
     let mut start = problem.points.clone();
@@ -44,6 +44,7 @@ pub(crate) fn fill_apart(
         let first = n_vertices;
         let place = |v: u32| if (v as usize) < n_part { vertices[v as usize].0 } else { first + v - n_part as u32 };
         hexes.extend(filled.mesh.hexes_raw().into_iter().map(|h| h.map(place)));
+        makers.extend(&filled.makers);
         n_vertices += (filled.mesh.n_vertices() - n_part) as u32;
         if filled.route != Route::Atlas {
             route = filled.route;
@@ -60,7 +61,7 @@ pub(crate) fn fill_apart(
     }
     let mesh = HexMesh::try_new(n_vertices as usize, &hexes).expect("meshes without common vertices glue properly");
     if mesh.n_hexes() as u64 <= u64::from(options.max_hexes) {
-        result.meshes.push(Filled { start, ..Filled::by(route, mesh) });
+        result.meshes.push(Filled { start, makers, ..Filled::by(route, mesh) });
     }
     Ok(result)
 }

@@ -1,6 +1,8 @@
 //! [`Filled`]: a verified mesh and how it was found.
 
 use crate::fill::attempt::Attempt;
+use crate::fill::maker::{Maker, layers, shares};
+use hexfill_io::MeshData;
 use hexfill_mesh::{HexMesh, StopReason};
 use hexfill_shell::CoarseMesh;
 use serde::Serialize;
@@ -27,6 +29,19 @@ pub enum Route {
 }
 
 impl Route {
+    /// What makes all hexes of a mesh that is made in one step.
+    fn maker(self) -> Maker {
+        match self {
+            Self::Catalogue => Maker::Catalogue,
+            Self::Atlas => Maker::Atlas,
+            Self::Shelling => Maker::Shelling,
+            Self::InwardFlips => Maker::InwardFlips,
+            Self::Growth => Maker::Growth,
+            Self::Construction => Maker::Construction,
+            Self::Laying => Maker::Laying,
+        }
+    }
+
     /// In words, for reports.
     pub fn words(self) -> &'static str {
         match self {
@@ -41,13 +56,19 @@ impl Route {
     }
 }
 
+/// The field of cells that says what made them.
+pub(crate) const ENGINE: &str = "engine";
+/// The field of cells with their layers.
+pub(crate) const LAYER: &str = "layer";
+
 /// A verified mesh.
 #[derive(Clone, Debug)]
 pub struct Filled {
     pub(crate) mesh: HexMesh,
     pub(crate) route: Route,
     pub(crate) start: Option<Vec<[f64; 3]>>,
-    pub(crate) stages: Vec<(&'static str, usize)>,
+    /// Per hex.
+    pub(crate) makers: Vec<Maker>,
     /// The smaller mesh that a shelling was lifted from.
     pub(crate) coarse: Option<CoarseMesh>,
 }
@@ -55,17 +76,21 @@ pub struct Filled {
 impl Filled {
     /// A mesh without start positions, made in one step.
     pub(crate) fn by(route: Route, mesh: HexMesh) -> Self {
-        Self { mesh, route, start: None, stages: Vec::new(), coarse: None }
+        let makers = vec![route.maker(); mesh.n_hexes()];
+        Self { mesh, route, start: None, makers, coarse: None }
     }
 
-    /// This filling after one more step, which added the hexes that `mesh` has more.
-    pub(crate) fn changed(&self, step: &'static str, mesh: HexMesh) -> Self {
-        let mut stages = self.stages.clone();
-        if stages.is_empty() {
-            stages.push((self.route.words(), self.mesh.n_hexes()));
-        }
-        stages.push((step, mesh.n_hexes().saturating_sub(self.mesh.n_hexes())));
-        Self { mesh, route: self.route, start: None, stages, coarse: None }
+    /// This filling after one more step, which put hexes behind those there were.
+    pub(crate) fn changed(&self, step: Maker, mesh: HexMesh) -> Self {
+        let mut makers = self.makers.clone();
+        makers.resize(mesh.n_hexes(), step);
+        Self { mesh, route: self.route, start: None, makers, coarse: None }
+    }
+
+    /// This filling after one more step; `origin` has for each hex the one that it was, or `None` for those of this step.
+    pub(crate) fn remade(&self, step: Maker, mesh: HexMesh, origin: &[Option<u32>]) -> Self {
+        let makers = origin.iter().map(|was| was.map_or(step, |h| self.makers[h as usize])).collect();
+        Self { mesh, route: self.route, start: None, makers, coarse: None }
     }
 
     /// The mesh; the surface's vertices keep their ids, interior vertices follow.
@@ -88,9 +113,30 @@ impl Filled {
         self.start.as_deref()
     }
 
-    /// What made how many of its hexes, where more than one step did.
-    pub fn stages(&self) -> &[(&'static str, usize)] {
-        &self.stages
+    /// What made each hex.
+    pub fn makers(&self) -> &[Maker] {
+        &self.makers
+    }
+
+    /// What made how many of its hexes: the counts of [`makers`](Self::makers).
+    pub fn stages(&self) -> Vec<(Maker, usize)> {
+        shares(&self.makers)
+    }
+
+    /// In which layer under the surface each hex lies: 1 for those with a facet on it, 2 for their neighbours across facets, and so on. With boundary layers
+    /// the first numbers are theirs.
+    pub fn layers(&self) -> Vec<u32> {
+        layers(&self.mesh)
+    }
+
+    /// Gives file data two numbers per hex: `engine`, the [number](Maker::number) of what made it, and `layer`.
+    pub fn flag(&self, data: &mut MeshData) {
+        let engines = self.makers.iter().map(|maker| f64::from(maker.number())).collect();
+        let layers = self.layers().into_iter().map(f64::from).collect();
+        for (name, values) in [(ENGINE, engines), (LAYER, layers)] {
+            data.hex_data.retain(|(n, _)| n != name);
+            data.hex_data.push((name.to_owned(), values));
+        }
     }
 }
 

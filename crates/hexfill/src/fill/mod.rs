@@ -11,6 +11,7 @@ pub(crate) mod error;
 pub(crate) mod filled;
 pub(crate) mod judged;
 pub(crate) mod last_resort;
+pub(crate) mod maker;
 pub(crate) mod options;
 pub(crate) mod scaled;
 pub(crate) mod search;

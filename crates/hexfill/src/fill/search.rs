@@ -4,6 +4,7 @@ use crate::fill::attempt::Attempt;
 use crate::fill::error::FillError;
 use crate::fill::filled::{FillResult, Filled, Route};
 use crate::fill::judged::accept;
+use crate::fill::maker::Maker;
 use crate::fill::options::{FillOptions, Strategy};
 use hexfill_construct::CellChoice;
 use hexfill_mesh::{Context, HexMesh, QuadSurface, StopReason};
@@ -34,7 +35,11 @@ pub(crate) fn search(
     result.tried.push(Attempt::Atlas { states: atlas.n_states(), cavities: outcome.cavities });
     for filling in outcome.fillings {
         let route = if filling.glued == 0 { Route::Atlas } else { Route::InwardFlips };
-        accept(surface, Filled::by(route, filling.mesh), options, result)?;
+        let mut filled = Filled::by(route, filling.mesh);
+        // The atlas's ball comes first.
+        let ball = filled.mesh.n_hexes() - filling.glued as usize;
+        filled.makers[..ball].fill(Maker::Atlas);
+        accept(surface, filled, options, result)?;
     }
     if options.strategy == Strategy::Atlas && result.meshes.len() < options.count && ctx.stop().is_none() {
         grow_towards(surface, options, ctx, result)?;

@@ -4,6 +4,7 @@ use crate::fill::attempt::Attempt;
 use crate::fill::error::FillError;
 use crate::fill::filled::{FillResult, Filled, Route};
 use crate::fill::judged::verify;
+use crate::fill::maker::Maker;
 use crate::fill::options::FillOptions;
 use crate::problem::Problem;
 use hexfill_mesh::Context;
@@ -35,11 +36,12 @@ pub(crate) fn shelled(
         }
         if shelled.mesh.n_hexes() as u64 <= u64::from(options.max_hexes) {
             verify(&problem.surface, &shelled.mesh, Route::Shelling)?;
+            let of_stage = |&(stage, n): &(&str, usize)| std::iter::repeat_n(Maker::of_stage(stage), n);
             meshes.push(Filled {
                 mesh: shelled.mesh,
                 route: Route::Shelling,
                 start: shelled.points,
-                stages: shelled.stages,
+                makers: shelled.stages.iter().flat_map(of_stage).collect(),
                 coarse: shelled.coarse,
             });
         }

@@ -49,6 +49,11 @@ fn judged_cells(mesh: &HexMesh, points: &[[f64; 3]]) -> Vec<CellQuality> {
     cell_quality(&judged).into_iter().flatten().collect()
 }
 
+/// The scaled Jacobian of a hex as a field shows it: certified, or none.
+pub(crate) fn shown(cell: &CellQuality) -> f64 {
+    if cell.valid { cell.certified_lower } else { cell.corner_scaled_jacobian.min(0.0) }
+}
+
 impl Placed {
     /// A mesh at these positions, every hex judged. An embedding that failed must not leave more invalid hexes than it found: those that it
     /// started from are kept then, with the boundary's positions put back.
@@ -164,7 +169,7 @@ impl Placed {
     /// Scaled Jacobian per hex, for colours: the certified one, or of a hex without certificate the least at its corners, at most 0. Empty if nothing was
     /// judged.
     pub fn scaled_jacobians(&self) -> Vec<f64> {
-        self.cells.iter().map(|c| if c.valid { c.certified_lower } else { c.corner_scaled_jacobian.min(0.0) }).collect()
+        self.cells.iter().map(shown).collect()
     }
 
     /// Gives file data of this mesh two numbers per hex, `certified_positive` (1 or 0) and `scaled_jacobian`. Those of an earlier

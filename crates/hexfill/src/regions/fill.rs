@@ -1,11 +1,13 @@
 //! [`fill_regions`]: each region by itself, and all put together.
 
 use crate::best::{PlaceOptions, PlacedFill, fill_placed};
+use crate::fill::filled::{ENGINE, LAYER};
+use crate::fill::maker::Maker;
 use crate::fill::options::{FillOptions, Strategy};
-use crate::place::placed::Placed;
+use crate::place::placed::{Placed, shown};
 use crate::regions::Region;
 use crate::regions::error::RegionsError;
-use hexfill_check::{Judged, Level, cell_quality, judge};
+use hexfill_check::{CellQuality, Judged, Level, cell_quality, judge};
 use hexfill_io::MeshData;
 use hexfill_mesh::{Context, StopReason};
 
@@ -14,7 +16,8 @@ use hexfill_mesh::{Context, StopReason};
 #[non_exhaustive]
 pub struct FilledRegions {
     /// The file with the hexes of all regions behind its own, and their points behind its own. Hexes carry the number of their region as tag, from 1, where
-    /// there are several regions; those of the file keep theirs.
+    /// there are several regions; those of the file keep theirs. Fields per hex: as of [`Filled::flag`](crate::Filled::flag), with 0 for hexes of the file, and of
+    /// [`Placed::flag`].
     pub data: MeshData,
     /// What was made for each region; empty where nothing was found.
     pub fills: Vec<PlacedFill>,
@@ -102,7 +105,14 @@ fn fill_once(
     let mut all = data.clone();
     let mut tags = data.hex_tags.clone().unwrap_or_else(|| vec![0; data.hexes.len()]);
     let (mut fills, mut stop) = (Vec::new(), StopReason::Finished);
-    let (mut certified, mut quality) = (vec![f64::NAN; data.hexes.len()], vec![f64::NAN; data.hexes.len()]);
+    let (mut engines, mut layers) =
+        (vec![f64::from(Maker::Given.number()); data.hexes.len()], vec![0.0; data.hexes.len()]);
+    let given = Judged::connectivity(data.points.len(), &data.hexes).with_points(&data.points);
+    let given = cell_quality(&given);
+    let given_invalid = given.iter().filter(|c| c.as_ref().is_none_or(|c| !c.valid)).count();
+    let is_certified = |c: &Option<CellQuality>| c.as_ref().map_or(0.0, |c| f64::from(u8::from(c.valid)));
+    let mut certified: Vec<f64> = given.iter().map(is_certified).collect();
+    let mut quality: Vec<f64> = given.iter().map(|c| c.as_ref().map_or(f64::NAN, shown)).collect();
     for (i, region) in regions.iter().enumerate() {
         let fill = fill_placed(&region.problem, options, how, ctx)
             .map_err(|source| RegionsError::Fill { region: i + 1, source })?;
@@ -115,6 +125,8 @@ fn fill_once(
             let number = |v: u32| region.points.get(v as usize).copied().unwrap_or_else(|| first + v - own as u32);
             all.hexes.extend(filled.mesh.hexes_raw().into_iter().map(|hex| hex.map(number)));
             tags.resize(all.hexes.len(), i as i64 + 1);
+            engines.extend(filled.makers.iter().map(|maker| f64::from(maker.number())));
+            layers.extend(filled.layers().into_iter().map(f64::from));
             if let Some(placed) = placed {
                 all.points.extend(&placed.points[own..]);
                 certified.extend(placed.cells.iter().map(|c| f64::from(u8::from(c.valid))));
@@ -132,14 +144,14 @@ fn fill_once(
         tags.resize(n, 0);
     }
     all.point_data.iter_mut().for_each(|(_, values)| values.resize(n, f64::NAN));
-    all.hex_data.retain(|(name, _)| name != "certified_positive" && name != "scaled_jacobian");
+    all.hex_data.retain(|(name, _)| ![ENGINE, LAYER, "certified_positive", "scaled_jacobian"].contains(&name.as_str()));
     all.hex_data.iter_mut().for_each(|(_, values)| values.resize(all.hexes.len(), f64::NAN));
     if how.embed.is_some() {
         all.hex_data.push(("certified_positive".to_owned(), certified));
         all.hex_data.push(("scaled_jacobian".to_owned(), quality));
     }
-    let given = Judged::connectivity(data.points.len(), &data.hexes).with_points(&data.points);
-    let given_invalid = cell_quality(&given).iter().filter(|c| c.as_ref().is_none_or(|c| !c.valid)).count();
+    all.hex_data.push((ENGINE.to_owned(), engines));
+    all.hex_data.push((LAYER.to_owned(), layers));
     Ok(FilledRegions { data: all, fills, given_invalid, stop })
 }
 

@@ -188,6 +188,7 @@ fn write_mesh(
         if let Some(placed) = placed.filter(|_| !args.no_embed) {
             placed.flag(&mut data);
         }
+        filled.flag(&mut data);
         let path = named(output);
         files::write_data(&path, args.to, &data, console)?;
         written.push(path);
@@ -200,7 +201,7 @@ fn write_mesh(
         title: files::short_name(problem.name()),
         points: placed.points(),
         mesh: filled.mesh(),
-        scaled_jacobians: (!args.no_embed).then(|| placed.scaled_jacobians()),
+        values: if args.no_embed { None } else { Shown::by_quality(placed.scaled_jacobians()) },
         facts: vec![
             ("made by".to_owned(), filled.route().words().to_owned()),
             ("geometry".to_owned(), placed.report().to_string()),

@@ -120,7 +120,7 @@ fn write(args: &FillArgs, whole: &FilledRegions, console: &Console) -> anyhow::R
         title: files::short_name(&args.surface),
         points: &whole.data.points,
         mesh: &mesh,
-        scaled_jacobians: quality.filter(|values| values.iter().all(|x| x.is_finite())),
+        values: quality.filter(|values| values.iter().all(|x| x.is_finite())).and_then(Shown::by_quality),
         facts: vec![("regions".to_owned(), whole.fills.len().to_string())],
     };
     written.extend(shown.write(args.view.clone(), args.picture.clone())?);
