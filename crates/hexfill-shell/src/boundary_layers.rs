@@ -48,17 +48,28 @@ impl BoundaryLayers {
     }
 }
 
-/// Cuts the layer of hexes under the surface. `None` if some hex there is not in a pillow, so that a cut would reach the surface.
-/// Surface vertices keep their ids; `points` are those of all vertices of the mesh, and so are the returned ones. Last come per hex the one that it is, or `None` for a
-/// piece of one that was cut.
+/// A mesh with boundary layers.
+#[derive(Clone, Debug)]
+pub struct CutLayers {
+    /// The mesh; surface vertices keep their ids.
+    pub mesh: HexMesh,
+    /// The positions of all vertices.
+    pub points: Vec<[f64; 3]>,
+    /// Per hex: the hex of the mesh before that it is, or `None` for a piece of one that was cut.
+    pub origin: Vec<Option<u32>>,
+}
+
+/// Cuts the layer of hexes under the surface; `points` are those of all vertices of the mesh. `None` if some hex there is not in a pillow, so that a cut
+/// would reach the surface.
 pub fn cut_boundary_layers(
     mesh: &HexMesh,
     surface: &QuadSurface,
     points: &[[f64; 3]],
     layers: &BoundaryLayers,
-) -> Option<(HexMesh, Vec<[f64; 3]>, Vec<Option<u32>>)> {
+) -> Option<CutLayers> {
     if layers.cells() <= 1 {
-        return Some((mesh.clone(), points.to_vec(), (0..mesh.n_hexes() as u32).map(Some).collect()));
+        let origin = (0..mesh.n_hexes() as u32).map(Some).collect();
+        return Some(CutLayers { mesh: mesh.clone(), points: points.to_vec(), origin });
     }
     let n_surface = surface.n_vertices() as u32;
     let hexes = mesh.hexes_raw();
@@ -118,7 +129,7 @@ pub fn cut_boundary_layers(
         }
     }
     let mesh = HexMesh::try_new(lattice.n_vertices() as usize, &cut).ok()?;
-    Some((mesh, at, origin))
+    Some(CutLayers { mesh, points: at, origin })
 }
 
 /// The outer end of every edge that is cut: the one on the surface, and for edges without one the end that corresponds to it.
@@ -190,7 +201,8 @@ mod tests {
         let (surface, mesh, points) = pillowed_box();
         for (height, cells) in [(None, 3), (Some(0.01), 4)] {
             let layers = BoundaryLayers { count: 3, height, growth: 1.5 };
-            let (cut, at, origin) = cut_boundary_layers(&mesh, &surface, &points, &layers).unwrap();
+            let CutLayers { mesh: cut, points: at, origin } =
+                cut_boundary_layers(&mesh, &surface, &points, &layers).unwrap();
             assert_eq!(cut.n_hexes(), mesh.n_hexes() + (cells - 1) * surface.n_quads());
             assert_eq!(at.len(), cut.n_vertices());
             assert_eq!(origin.iter().filter(|o| o.is_none()).count(), cells * surface.n_quads());

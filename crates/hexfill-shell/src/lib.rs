@@ -57,7 +57,7 @@ mod sweep_tests;
 #[cfg(test)]
 mod test_surfaces;
 
-pub use boundary_layers::{BoundaryLayers, cut_boundary_layers};
+pub use boundary_layers::{BoundaryLayers, CutLayers, cut_boundary_layers};
 pub use front::{Front, FrontError, Mark};
 pub use lift::CoarseMesh;
 pub use pillow::{Pillowed, pillow};

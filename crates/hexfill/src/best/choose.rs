@@ -29,7 +29,7 @@ use hexfill_embed::quick_star_bound;
 use hexfill_lay::lay;
 use hexfill_mesh::{Context, HexMesh, StopReason, VertexId, hex_isomorphism};
 use hexfill_search::MAX_QUADS;
-use hexfill_shell::{Layer, SplitOptions, cut_boundary_layers, split_stars};
+use hexfill_shell::{CutLayers, Layer, SplitOptions, cut_boundary_layers, split_stars};
 
 /// The worst scaled Jacobian from which on a mesh is good enough to compute on.
 pub(crate) const GOOD: f64 = 0.2;
@@ -473,7 +473,8 @@ impl<'a> Trial<'a> {
     fn cut_layers(&mut self) -> Result<Option<u32>, FillError> {
         let (Some(layers), Some((_, filled, placed))) = (self.options.layers, &mut self.best) else { return Ok(None) };
         let surface = &self.problem.surface;
-        let Some((mesh, points, origin)) = cut_boundary_layers(&filled.mesh, surface, &placed.points, &layers) else {
+        let made = cut_boundary_layers(&filled.mesh, surface, &placed.points, &layers);
+        let Some(CutLayers { mesh, points, origin }) = made else {
             return Err(FillError::NotForStrategy {
                 what: "no mesh with a layer of one hexahedron under every quad was found, so there is nothing to cut into boundary layers"
                     .to_owned(),
