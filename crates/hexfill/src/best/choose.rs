@@ -43,7 +43,7 @@ const STARTS: u32 = 2;
 const MOST_CONSTRUCTED: usize = 1000;
 
 /// Hexes are laid one by one in surfaces of at most so many quads.
-const MOST_LAID: usize = 300;
+pub(crate) const MOST_LAID: usize = 300;
 
 /// Pillows are put into meshes of surfaces of at most so many quads.
 const MOST_PILLOWED: usize = 160;

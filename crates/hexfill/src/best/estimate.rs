@@ -5,6 +5,7 @@
 //! are stirred, and at last constructed, with some 46 hexes a quad.
 
 use crate::best::PlaceOptions;
+use crate::best::choose::MOST_LAID;
 use crate::fill::options::{Effort, FillOptions, Strategy};
 use crate::fill::stored::stored_mesh;
 use crate::problem::Problem;
@@ -57,10 +58,13 @@ pub fn estimate(problem: &Problem, options: &FillOptions, how: &PlaceOptions) ->
         _ => [n / 4, (4 * n).max((2.0 * (quads / 6.0).powf(1.5)) as u64)],
     };
     let small = surface.is_sphere() && surface.n_quads() <= hexfill_search::MAX_QUADS;
+    let is_laid = surface.is_sphere() && surface.n_quads() <= MOST_LAID;
     let engines = match options.strategy {
         Strategy::Construct => vec!["construction"],
+        Strategy::Shell if is_laid => vec!["shelling", "laying"],
         Strategy::Shell => vec!["shelling"],
-        _ if small => vec!["atlas", "shelling", "inward flips", "construction"],
+        _ if small => vec!["atlas", "shelling", "laying", "inward flips", "construction"],
+        _ if is_laid => vec!["shelling", "laying", "construction"],
         _ => vec!["shelling", "construction"],
     };
     (seconds[1] >= LONG).then_some(Estimate { engines, seconds, hexes })
