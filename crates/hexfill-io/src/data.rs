@@ -6,7 +6,6 @@
 
 use crate::error::WriteError;
 use crate::format::Format;
-use crate::formats::nastran;
 use hexfill_mesh::{HexMesh, HexMeshError, QuadSurface, SurfaceError};
 use std::collections::BTreeMap;
 
@@ -286,35 +285,6 @@ impl MeshData {
         faces.chain(cells).chain(rest).for_each(|v| *v = number[*v as usize]);
     }
 
-    /// What `format` would drop without refusing: tags and data it has no place for, one sentence each.
-    ///
-    /// # Example
-    /// ```
-    /// use hexfill_io::{Format, MeshData};
-    ///
-    /// let points = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
-    /// let mesh = MeshData { quad_tags: Some(vec![7]), ..MeshData::from_quads(points, vec![[0, 1, 2, 3]]) };
-    /// assert!(mesh.losses(Format::Vtu).is_empty());
-    /// assert_eq!(mesh.losses(Format::Off).len(), 1); // one sentence: tags of quads
-    /// ```
-    pub fn losses(&self, format: Format) -> Vec<String> {
-        let mut losses = Vec::new();
-        let mut lost = |is_lost: bool, what: &str| {
-            if is_lost {
-                losses.push(format!("{} does not carry {what}", format.title()));
-            }
-        };
-        lost(self.point_tags.is_some() && !format.holds_point_tags(), "tags of points");
-        lost(self.quad_tags.is_some() && !format.holds_cell_tags(), "tags of quads");
-        lost(self.names_lost(format), "names of tags");
-        lost(!self.point_data.is_empty() && !format.holds_data(), "data on points");
-        lost(!self.quad_data.is_empty() && !format.holds_data(), "data on quads");
-        lost(!self.hex_data.is_empty() && !format.holds_data(), "data on hexes");
-        let rounded = if format == Format::Nastran { nastran::rounded(self) } else { 0 };
-        lost(rounded > 0, &format!("all digits of {rounded} points: its fields have 16 characters"));
-        losses
-    }
-
     /// The names of each tag.
     pub(crate) fn names_by_tag(&self) -> BTreeMap<(TagOn, i64), Vec<&str>> {
         let mut names: BTreeMap<(TagOn, i64), Vec<&str>> = BTreeMap::new();
@@ -336,12 +306,6 @@ impl MeshData {
             fields[place].1.push([name.tag, name.on.dimension()]);
         }
         fields
-    }
-
-    /// Whether `format` has tags without a place for their names, or no tags.
-    fn names_lost(&self, format: Format) -> bool {
-        let held = |on| if on == TagOn::Points { format.holds_point_tags() } else { format.holds_cell_tags() };
-        self.tag_names.iter().any(|n| !held(n.on))
     }
 
     fn largest_index(&self) -> Option<u32> {

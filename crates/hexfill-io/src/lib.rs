@@ -31,6 +31,7 @@ mod format;
 mod formats;
 mod groups;
 mod limits;
+mod losses;
 pub mod orders;
 mod save;
 mod source;

@@ -1,6 +1,6 @@
 //! [`without_sheets`]: what can go again, as long as the rest has valid positions.
 
-use crate::lay::LaidMesh;
+use crate::laid_mesh::LaidMesh;
 use hexfill_embed::untangle_near;
 use hexfill_geometry::Vector;
 use hexfill_mesh::Context;

@@ -1,6 +1,7 @@
 //! [`lay`]: the verb.
 
 use crate::fewer::without_sheets;
+use crate::laid_mesh::LaidMesh;
 use crate::laying::{Laying, Underway};
 use hexfill_geometry::{Vector, norm, sub};
 use hexfill_mesh::{Context, HexMesh, QuadSurface};
@@ -26,19 +27,8 @@ impl Default for LayOptions {
     }
 }
 
-/// A mesh with valid positions, but for what the surface leaves no room for.
-#[derive(Clone, Debug)]
-pub struct LaidMesh {
-    /// The mesh; vertices of the surface keep their ids.
-    pub mesh: HexMesh,
-    /// All positions; those of the surface bit for bit.
-    pub points: Vec<Vector>,
-    /// Hexes of the first pillow that are not valid: at surface vertices where no single interior edge sees all quads, or hardly.
-    pub invalid: usize,
-    /// Pillows put in, the first included; some may have gone again.
-    pub pillows: u32,
-}
-
+/// For surfaces of more quads half as many meshes are begun at once, in more batches, and half as many sheets are tried.
+const LARGE: usize = 150;
 /// Meshes from which sheets are taken.
 const KEPT: usize = 2;
 /// Plans for one mesh: a jam that pillows do not clear asks for another.
@@ -54,12 +44,15 @@ pub fn lay(surface: &QuadSurface, points: &[Vector], options: &LayOptions, ctx: 
     let within: Vec<Vector> = points.iter().map(|&p| frame.enter(p)).collect();
     let Some(start) = Laying::begin(surface, &within, ctx) else { return Vec::new() };
     let most = (options.most * surface.n_quads() as f64) as usize;
-    for batch in 0..options.batches {
-        let mut made: Vec<LaidMesh> = (0..options.attempts)
+    // Each hex is laid with all others looked at, so time grows with the square of the quads.
+    let share = if surface.n_quads() > LARGE { 2 } else { 1 };
+    let (attempts, sheets) = (options.attempts.div_ceil(share), options.sheets.div_ceil(share as u32));
+    for batch in 0..options.batches * share {
+        let mut made: Vec<LaidMesh> = (0..attempts)
             .into_par_iter()
             .filter_map(|i| {
                 let quiet = if i == 0 { *ctx } else { Context { progress: None, ..*ctx } };
-                let laying = to_the_end(start.clone(), ctx.seed + batch * options.attempts + i, most, &quiet)?;
+                let laying = to_the_end(start.clone(), ctx.seed + batch * attempts + i, most, &quiet)?;
                 let mesh = HexMesh::try_new(laying.points.len(), &laying.hexes).ok()?;
                 Some(LaidMesh { mesh, points: laying.points, invalid: laying.forgiven.len(), pillows: laying.pillows })
             })
@@ -68,10 +61,8 @@ pub fn lay(surface: &QuadSurface, points: &[Vector], options: &LayOptions, ctx: 
             // Stable: among equals the first attempt.
             made.sort_by_key(|laid| laid.mesh.n_hexes());
             made.truncate(KEPT);
-            let mut fewer: Vec<LaidMesh> = made
-                .into_par_iter()
-                .map(|laid| without_sheets(laid, surface.n_vertices(), options.sheets, ctx))
-                .collect();
+            let mut fewer: Vec<LaidMesh> =
+                made.into_par_iter().map(|laid| without_sheets(laid, surface.n_vertices(), sheets, ctx)).collect();
             fewer.sort_by_key(|laid| laid.mesh.n_hexes());
             for laid in &mut fewer {
                 laid.points.iter_mut().for_each(|p| *p = frame.leave(*p));

@@ -101,11 +101,13 @@ impl Laying {
         Some(laying)
     }
 
-    /// Forgives the hexes that are not valid.
+    /// Forgives the hexes that are not valid and that no small change makes valid.
     fn forgive(&mut self) {
-        let whole = HexMesh::try_new(self.points.len(), &self.hexes);
-        let invalid = whole.ok().and_then(|mesh| untangle_near(&mesh, &self.points, 0, 0, &Context::default()).ok());
-        self.forgiven = invalid.into_iter().flat_map(|(_, bad)| bad).map(|h| h.0).collect();
+        let Ok(mesh) = HexMesh::try_new(self.points.len(), &self.hexes) else { return };
+        if let Ok((points, bad)) = untangle_near(&mesh, &self.points, 0, 0, &Context::default()) {
+            self.points = points;
+            self.forgiven = bad.iter().map(|h| h.0).collect();
+        }
     }
 
     /// The surface that the front is, with a new number for each vertex, and the old ones. `None` if it is no proper surface.

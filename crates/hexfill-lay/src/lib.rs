@@ -20,9 +20,11 @@
 #![warn(unreachable_pub)]
 
 mod fewer;
+mod laid_mesh;
 mod lay;
 mod laying;
 mod plan;
 mod void_front;
 
-pub use lay::{LaidMesh, LayOptions, lay};
+pub use laid_mesh::LaidMesh;
+pub use lay::{LayOptions, lay};
