@@ -101,7 +101,7 @@ impl Frame {
 fn to_the_end(mut laying: Laying, seed: u64, most: usize, ctx: &Context<'_>) -> Option<Laying> {
     let mut plans = 0;
     let mut underway = next_plan(&laying, seed, &mut plans, ctx)?;
-    // Pillows since the last hex.
+    // Pillows since the last hex; a new plan begins right behind one.
     let mut jams = 0;
     while !laying.front.is_empty() {
         if ctx.stop().is_some() || laying.hexes.len() > most {
@@ -115,9 +115,8 @@ fn to_the_end(mut laying: Laying, seed: u64, most: usize, ctx: &Context<'_>) -> 
             jams = 0;
             continue;
         }
-        let is_fresh = jams > 0;
-        if !is_fresh || !underway.is_over() && jams < 2 {
-            laying.pillow(Some(&mut underway), ctx);
+        if jams == 0 || jams == 1 && !underway.is_over() {
+            laying.pillow(&mut underway, ctx);
             jams += 1;
         }
         if underway.is_over() || jams >= 2 {

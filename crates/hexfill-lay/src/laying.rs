@@ -110,29 +110,11 @@ impl Laying {
         }
     }
 
-    /// The surface that the front is, with a new number for each vertex, and the old ones. `None` if it is no proper surface.
-    pub(crate) fn front_surface(&self) -> Option<(QuadSurface, Vec<u32>)> {
-        let mut number: FxHashMap<u32, u32> = FxHashMap::default();
-        let mut ids = Vec::new();
-        let quads: Vec<[u32; 4]> = self
-            .front
-            .iter()
-            .map(|q| {
-                q.map(|v| {
-                    *number.entry(v).or_insert_with(|| {
-                        ids.push(v);
-                        ids.len() as u32 - 1
-                    })
-                })
-            })
-            .collect();
-        QuadSurface::try_new(ids.len(), &quads).ok().filter(QuadSurface::is_sphere).map(|surface| (surface, ids))
-    }
-
-    /// A plan for the void as it is.
+    /// A plan for the void as it is; `None` if its front is no proper sphere, or no hex was found.
     pub(crate) fn planned(&self, number: u64, ctx: &Context<'_>) -> Option<Underway> {
-        let (surface, mut ids) = self.front_surface()?;
-        let plan = Plan::new(&surface, number, ctx)?;
+        let (surface, vertices) = QuadSurface::on_own_vertices(self.front.clone()).ok()?;
+        let plan = surface.is_sphere().then(|| Plan::new(&surface, number, ctx)).flatten()?;
+        let mut ids: Vec<u32> = vertices.into_iter().map(|v| v.0).collect();
         ids.resize(plan.n_vertices, NOT_YET);
         Some(Underway { rest: (0..plan.hexes.len() as u32).collect(), plan, ids })
     }
@@ -214,7 +196,7 @@ impl Laying {
 
     /// Puts a pillow behind the front and follows it with the plan. It is valid, as the pyramids are, unless a cell with positive corners is
     /// not: then the pillow with fewest such cells is taken, and later hexes mend it.
-    pub(crate) fn pillow(&mut self, underway: Option<&mut Underway>, ctx: &Context<'_>) {
+    pub(crate) fn pillow(&mut self, underway: &mut Underway, ctx: &Context<'_>) {
         let mut best: Option<([usize; 2], Self, FxHashMap<u32, u32>)> = None;
         for height in HEIGHTS {
             let mut trial = self.clone();
@@ -238,7 +220,7 @@ impl Laying {
                 break;
             }
         }
-        for id in underway.into_iter().flat_map(|underway| &mut underway.ids) {
+        for id in &mut underway.ids {
             *id = copies.get(id).copied().unwrap_or(*id);
         }
     }

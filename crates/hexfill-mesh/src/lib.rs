@@ -46,6 +46,7 @@ mod ids;
 mod improper;
 mod key;
 mod orbits;
+mod own_vertices;
 mod random;
 mod sheets;
 mod shelling;

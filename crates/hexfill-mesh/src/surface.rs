@@ -467,29 +467,6 @@ impl QuadSurface {
         self.n_components == 1 && self.euler_characteristic() == 2
     }
 
-    /// Each component as a surface of its own with vertices renumbered ascending; with the map to the old vertex ids and quad ids.
-    pub fn split_components(&self) -> Vec<(Self, Vec<VertexId>, Vec<QuadId>)> {
-        let mut parts: Vec<(Vec<[u32; 4]>, Vec<QuadId>)> = vec![Default::default(); self.n_components];
-        for (q, quad) in self.quads.iter().enumerate() {
-            let part = &mut parts[self.component[q] as usize];
-            part.0.push(quad.map(|v| v.0));
-            part.1.push(QuadId::new(q));
-        }
-        parts
-            .into_iter()
-            .map(|(mut quads, ids)| {
-                let mut old: Vec<u32> = quads.iter().flatten().copied().collect();
-                old.sort_unstable();
-                old.dedup();
-                for v in quads.iter_mut().flatten() {
-                    *v = old.binary_search(v).expect("every vertex was collected") as u32;
-                }
-                let part = Self::try_new(old.len(), &quads).expect("a component of a surface is a surface");
-                (part, old.into_iter().map(VertexId).collect(), ids)
-            })
-            .collect()
-    }
-
     /// The same surface with every quad reversed (inside out).
     #[must_use]
     pub fn inverted(&self) -> Self {
@@ -593,16 +570,5 @@ mod tests {
             }
         }
         assert!(matches!(QuadSurface::try_new(16, &quads), Err(SurfaceError::NotOrientable { .. })));
-    }
-
-    #[test]
-    fn components_split_and_keep_their_ids() {
-        let mut two = cube();
-        two.extend(cube().iter().map(|q| q.map(|v| v + 9)));
-        let s = QuadSurface::try_new(17, &two).unwrap();
-        assert_eq!((s.n_components(), s.n_used_vertices(), s.genus()), (2, 16, 0));
-        let parts = s.split_components();
-        assert_eq!(parts[1].1[0], VertexId(9));
-        assert_eq!(parts[1].2[0], QuadId(6));
     }
 }

@@ -6,7 +6,6 @@
 
 use hexfill_mesh::cube::{CORNER_NEIGHBOURS, FACETS};
 use hexfill_mesh::{HexMesh, HexMeshError, QuadSurface};
-use rustc_hash::FxHashMap;
 
 /// Hexes with their incidence. See the module page.
 #[derive(Clone, Debug)]
@@ -148,17 +147,7 @@ impl Cells {
 
 /// Whether a skin is one sphere: then the set behind it can be shrunk.
 pub(crate) fn is_sphere(skin: &[[u32; 4]]) -> bool {
-    let mut number = FxHashMap::default();
-    let quads: Vec<[u32; 4]> = skin
-        .iter()
-        .map(|quad| {
-            quad.map(|v| {
-                let next = number.len() as u32;
-                *number.entry(v).or_insert(next)
-            })
-        })
-        .collect();
-    QuadSurface::try_new(number.len(), &quads).is_ok_and(|s| s.is_sphere())
+    QuadSurface::on_own_vertices(skin.to_vec()).is_ok_and(|(surface, _)| surface.is_sphere())
 }
 
 #[cfg(test)]

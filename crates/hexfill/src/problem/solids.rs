@@ -40,13 +40,6 @@ pub(crate) fn solids(surface: &QuadSurface, points: Option<&[[f64; 3]]>) -> Vec<
 /// Some components as a surface of their own: with the map to the old vertex ids.
 pub(crate) fn part(surface: &QuadSurface, components: &[usize]) -> (QuadSurface, Vec<VertexId>) {
     let quads = (0..).zip(surface.quads()).filter(|(q, _)| components.contains(&surface.component(QuadId::new(*q))));
-    let mut quads: Vec<[u32; 4]> = quads.map(|(_, quad)| quad.map(|v| v.0)).collect();
-    let mut old: Vec<u32> = quads.iter().flatten().copied().collect();
-    old.sort_unstable();
-    old.dedup();
-    for v in quads.iter_mut().flatten() {
-        *v = old.binary_search(v).expect("every vertex was collected") as u32;
-    }
-    let part = QuadSurface::try_new(old.len(), &quads).expect("components of a surface are a surface");
-    (part, old.into_iter().map(VertexId).collect())
+    let quads = quads.map(|(_, quad)| quad.map(|v| v.0)).collect();
+    QuadSurface::on_own_vertices(quads).expect("components of a surface are a surface")
 }
