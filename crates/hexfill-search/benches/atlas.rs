@@ -39,7 +39,11 @@ fn atlas(c: &mut Criterion) {
     group.bench_function("fill the spindle from the embedded atlas", |b| {
         b.iter(|| fill_from_atlas(&surface, Atlas::embedded(), &FillOptions::default(), &Context::default()));
     });
-    group.bench_function("read the embedded atlas", |b| {
+    // What a program pays at its start: the first look-up touches the pages that it reads.
+    group.bench_function("look the spindle up and replay it", |b| {
+        b.iter(|| black_box(Atlas::embedded()).balls_for(black_box(&cavity)).next().is_some());
+    });
+    group.bench_function("read and check the packed atlas, as from a file", |b| {
         b.iter(|| Atlas::read_packed(include_bytes!("../data/default.hxatlas")));
     });
     // More fillings than the atlas has: inward flips look for the others.

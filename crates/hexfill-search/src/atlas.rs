@@ -4,12 +4,13 @@
 //! boundary compared before it is handed out, so a clash of hashes costs time and never a wrong answer.
 
 use crate::atlas_index::{AtlasIndex, HASH_BITS};
+use crate::atlas_states::AtlasStates;
 use crate::ball::Ball;
 use crate::canonical::Canonical;
 use crate::cavity::Cavity;
 use crate::flip::Flip;
 use crate::grow::{Growth, class_hash};
-use std::sync::OnceLock;
+use std::sync::LazyLock;
 
 /// Marks a state that is kept as a step to others only.
 pub(crate) const STEP: u64 = 0;
@@ -25,12 +26,9 @@ pub struct Atlas {
     /// First state of each level; level 1 is the cube.
     pub(crate) level_starts: Vec<u32>,
     /// Per state: the state it grew from (one level below), the flip on that state's canonical cavity.
-    pub(crate) parents: Vec<u32>,
-    pub(crate) flips: Vec<Flip>,
-    /// Per state: the short hash of its class, or [`STEP`].
-    pub(crate) hashes: Vec<u64>,
-    /// The states that are more than steps, by hash, then ascending (fewest hexes first).
-    index: AtlasIndex,
+    pub(crate) states: AtlasStates,
+    /// The states that are more than steps, by the short hash of their class, then ascending (fewest hexes first).
+    pub(crate) index: AtlasIndex,
 }
 
 /// Counts of an atlas.
@@ -79,8 +77,9 @@ impl Spread {
 
 impl Atlas {
     pub(crate) fn from_parts(level_starts: Vec<u32>, parents: Vec<u32>, flips: Vec<Flip>, hashes: Vec<u64>) -> Self {
-        let index = AtlasIndex::new(&hashes, STEP);
-        Self { level_starts, parents, flips, hashes, index }
+        let states = AtlasStates::new(&parents, &flips);
+        let index = AtlasIndex::new(&hashes, STEP, states.is_wide());
+        Self { level_starts, states, index }
     }
 
     /// All states of a growth.
@@ -101,27 +100,29 @@ impl Atlas {
         )
     }
 
-    /// The atlas compiled into the library. It was made by `hexfill atlas build` and `atlas prune`; see `record/`.
+    /// The atlas compiled into the library, looked up where it lies. It was made by `hexfill atlas build` and `atlas prune`; see `record/`.
     pub fn embedded() -> &'static Self {
-        static ATLAS: OnceLock<Atlas> = OnceLock::new();
-        ATLAS.get_or_init(|| {
-            Self::read_packed(include_bytes!("../data/default.hxatlas")).expect("the shipped atlas is intact")
-        })
+        static ATLAS: LazyLock<Atlas> = LazyLock::new(|| Atlas::compiled_in(include_bytes!("../data/default.hxatlas")));
+        &ATLAS
     }
 
     /// The smallest fillings known of nearly all 3-connected spheres of up to 20 quads, compiled into the library. For connectivity alone: where positions
     /// are wanted the [embedded](Self::embedded) atlas serves better, whose fillings have more hexes and embed more often. Made by `hexfill atlas complete`;
     /// see `record/`.
     pub fn fewest() -> &'static Self {
-        static ATLAS: OnceLock<Atlas> = OnceLock::new();
-        ATLAS.get_or_init(|| {
-            Self::read_packed(include_bytes!("../data/spheres-20.hxatlas")).expect("the shipped atlas is intact")
-        })
+        static ATLAS: LazyLock<Atlas> =
+            LazyLock::new(|| Atlas::compiled_in(include_bytes!("../data/spheres-20.hxatlas")));
+        &ATLAS
     }
 
     /// Number of states, steps included.
     pub fn n_states(&self) -> usize {
-        self.parents.len()
+        self.states.len()
+    }
+
+    /// The short hash of the class of each state, or [`STEP`].
+    pub(crate) fn hashes(&self) -> Vec<u64> {
+        self.index.hashes(self.n_states(), STEP)
     }
 
     /// Number of hexes of a state.
@@ -138,8 +139,8 @@ impl Atlas {
     pub fn flips_to(&self, mut state: u32) -> Vec<Flip> {
         let mut flips = Vec::new();
         while state != 0 {
-            flips.push(self.flips[state as usize]);
-            state = self.parents[state as usize];
+            flips.push(self.states.flip(state));
+            state = self.states.parent(state);
         }
         flips.reverse();
         flips
@@ -197,8 +198,9 @@ impl Atlas {
     /// A number of every state that starts with that of the cube and changes with each flip.
     fn along_the_flips(&self, cube: u8, gain: impl Fn(Flip) -> i32) -> Vec<u8> {
         let mut values = vec![cube; self.n_states()];
-        for s in 1..self.n_states() {
-            values[s] = (i32::from(values[self.parents[s] as usize]) + gain(self.flips[s])) as u8;
+        for s in 1..self.n_states() as u32 {
+            let parent = self.states.parent(s);
+            values[s as usize] = (i32::from(values[parent as usize]) + gain(self.states.flip(s))) as u8;
         }
         values
     }
@@ -219,9 +221,10 @@ impl Atlas {
         for state in (0..self.n_states()).rev() {
             wanted[state] |= named[state] || state == 0;
             if wanted[state] {
-                wanted[self.parents[state] as usize] = true;
+                wanted[self.states.parent(state as u32) as usize] = true;
             }
         }
+        let hashes = self.hashes();
         let mut renumbered = vec![u32::MAX; self.n_states()];
         let mut out = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         for (level, &first) in self.level_starts.iter().enumerate() {
@@ -231,15 +234,15 @@ impl Atlas {
                 break;
             }
             members.sort_by_key(|&s| {
-                let parent = self.parents[s as usize];
-                (if s == 0 { 0 } else { renumbered[parent as usize] }, self.flips[s as usize])
+                let parent = self.states.parent(s);
+                (if s == 0 { 0 } else { renumbered[parent as usize] }, self.states.flip(s))
             });
             out.0.push(out.1.len() as u32);
             for s in members {
                 renumbered[s as usize] = out.1.len() as u32;
-                out.1.push(if s == 0 { 0 } else { renumbered[self.parents[s as usize] as usize] });
-                out.2.push(self.flips[s as usize]);
-                out.3.push(if named[s as usize] { self.hashes[s as usize] } else { STEP });
+                out.1.push(if s == 0 { 0 } else { renumbered[self.states.parent(s) as usize] });
+                out.2.push(self.states.flip(s));
+                out.3.push(if named[s as usize] { hashes[s as usize] } else { STEP });
             }
         }
         Self::from_parts(out.0, out.1, out.2, out.3)

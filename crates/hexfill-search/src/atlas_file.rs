@@ -1,22 +1,20 @@
-//! Two files for an atlas: the *log* a growth appends to, level by level, and the *packed* form that ships.
+//! The *log* that a growth appends to, level by level.
 //!
-//! Log: header (magic, cap, width), then one record a level: level, children, thinned, number of states, the states
+//! Header (magic, cap, width), then one record a level: level, children, thinned, number of states, the states
 //! (parent `u32`, flip 2 bytes, class hash 5 bytes), xxh3-64 of all that. A level is written in one go and synced, so a
 //! killed growth loses the level in flight; a torn last record is cut off on resuming.
-//! Packed: magic, xxh3-64 of the rest, then a deflate stream of the arrays with parents as differences.
-//! All numbers little-endian.
+//! All numbers little-endian. The *packed* form of an atlas is another file ([`crate::atlas_packed`]).
 
-use crate::atlas::{Atlas, STEP, short_hash};
+use crate::atlas::{Atlas, short_hash};
+use crate::atlas_packed::PACKED_MAGIC;
 use crate::flip::Flip;
 use crate::grow::{GrowOptions, Growth, LevelReport};
-use flate2::{Compression, bufread::DeflateDecoder, write::DeflateEncoder};
 use std::fs::{File, OpenOptions};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use xxhash_rust::xxh3::xxh3_64;
 
 const LOG_MAGIC: &[u8; 8] = b"HXGROW01";
-const PACKED_MAGIC: &[u8; 8] = b"HXATLAS1";
 const HASH_BYTES: usize = 5;
 const STATE_BYTES: usize = 4 + 2 + HASH_BYTES;
 const HEADER_BYTES: usize = 8 + 4 + 4;
@@ -211,7 +209,8 @@ impl Atlas {
     /// [`AtlasError`].
     pub fn read_path(path: &Path) -> Result<Self, AtlasError> {
         let bytes = std::fs::read(path).map_err(io_error(path))?;
-        if bytes.starts_with(PACKED_MAGIC) {
+        // A packed atlas of another version is named as such.
+        if bytes.starts_with(&PACKED_MAGIC[..7]) {
             return Self::read_packed(&bytes).map_err(|what| AtlasError::Damaged {
                 path: path.to_owned(),
                 offset: 0,
@@ -243,126 +242,6 @@ impl Atlas {
         }
         Ok(Self::from_parts(starts, all.parents, all.flips, all.hashes))
     }
-
-    /// Writes the packed form.
-    ///
-    /// # Errors
-    /// Whatever the writer says.
-    pub fn write_packed(&self, out: &mut impl Write) -> io::Result<()> {
-        let mut body = Vec::new();
-        varint(&mut body, self.level_starts.len() as u64);
-        for (level, &start) in self.level_starts.iter().enumerate() {
-            let end = self.level_starts.get(level + 1).copied().unwrap_or(self.parents.len() as u32);
-            varint(&mut body, u64::from(end - start));
-            let mut last = 0;
-            for &parent in &self.parents[start as usize..end as usize] {
-                // Zigzag: pruned atlases have ascending parents, others need not.
-                let step = i64::from(parent) - last;
-                varint(&mut body, ((step << 1) ^ (step >> 63)) as u64);
-                last = i64::from(parent);
-            }
-        }
-        body.extend(self.flips.iter().map(|f| f.kind as u8));
-        body.extend(self.flips.iter().map(|f| f.dart));
-        for &hash in &self.hashes {
-            if hash == STEP {
-                body.push(0);
-            } else {
-                body.push(1);
-            }
-        }
-        for &hash in self.hashes.iter().filter(|&&h| h != STEP) {
-            body.extend_from_slice(&hash.to_le_bytes()[..HASH_BYTES]);
-        }
-        let mut encoder = DeflateEncoder::new(Vec::new(), Compression::best());
-        encoder.write_all(&body)?;
-        let body = encoder.finish()?;
-        out.write_all(PACKED_MAGIC)?;
-        out.write_all(&xxh3_64(&body).to_le_bytes())?;
-        out.write_all(&body)
-    }
-
-    /// Reads the packed form.
-    ///
-    /// # Errors
-    /// What is wrong with the bytes.
-    pub fn read_packed(bytes: &[u8]) -> Result<Self, &'static str> {
-        let body = bytes.strip_prefix(PACKED_MAGIC).ok_or("not a packed atlas")?;
-        if body.len() < 8 {
-            return Err("truncated");
-        }
-        if xxh3_64(&body[8..]) != u64_at(body, 0) {
-            return Err("checksum does not match");
-        }
-        // About what atlases come to; more is allocated as it is met.
-        let mut data = Vec::with_capacity(2 * body.len());
-        DeflateDecoder::new(&body[8..]).read_to_end(&mut data).map_err(|_| "broken deflate stream")?;
-        let mut data = data.as_slice();
-        let n_levels = read_varint(&mut data).ok_or("truncated")?;
-        let mut level_starts = Vec::new();
-        let mut parents: Vec<u32> = Vec::new();
-        for level in 0..n_levels {
-            let below = parents.len() as i64;
-            level_starts.push(below as u32);
-            let mut last = 0i64;
-            let members = read_varint(&mut data).ok_or("truncated")?;
-            parents.reserve((members as usize).min(data.len()));
-            for _ in 0..members {
-                let step = read_varint(&mut data).ok_or("truncated")?;
-                last = last.wrapping_add((step >> 1) as i64 ^ -((step & 1) as i64));
-                if last < 0 || (last >= below && level > 0) || (level == 0 && last != 0) {
-                    return Err("parent above its child");
-                }
-                parents.push(last as u32);
-            }
-        }
-        let n = parents.len();
-        if n == 0 || data.len() < 3 * n {
-            return Err("truncated");
-        }
-        let (kinds, rest) = data.split_at(n);
-        let (darts, rest) = rest.split_at(n);
-        let (named, mut rest) = rest.split_at(n);
-        let flips: Option<Vec<Flip>> = kinds.iter().zip(darts).map(|(&k, &d)| Flip::from_bytes([k, d])).collect();
-        let mut hashes = vec![STEP; n];
-        for (slot, _) in hashes.iter_mut().zip(named).filter(|(_, named)| **named == 1) {
-            let (head, tail) = rest.split_first_chunk::<HASH_BYTES>().ok_or("truncated")?;
-            let [a, b, c, d, e] = *head;
-            *slot = u64::from(u32::from_le_bytes([a, b, c, d])) | u64::from(e) << 32;
-            rest = tail;
-        }
-        if !rest.is_empty() {
-            return Err("bytes after the end");
-        }
-        Ok(Self::from_parts(level_starts, parents, flips.ok_or("unknown flip")?, hashes))
-    }
-}
-
-fn varint(out: &mut Vec<u8>, mut x: u64) {
-    while x >= 0x80 {
-        out.push(x as u8 | 0x80);
-        x >>= 7;
-    }
-    out.push(x as u8);
-}
-
-#[inline]
-fn read_varint(data: &mut &[u8]) -> Option<u64> {
-    // Nearly all numbers of an atlas are one byte.
-    if let [byte @ 0..0x80, rest @ ..] = *data {
-        *data = rest;
-        return Some(u64::from(*byte));
-    }
-    let mut x = 0u64;
-    for shift in (0..64).step_by(7) {
-        let (&byte, rest) = data.split_first()?;
-        *data = rest;
-        x |= u64::from(byte & 0x7f) << shift;
-        if byte < 0x80 {
-            return Some(x);
-        }
-    }
-    None
 }
 
 #[cfg(test)]
@@ -376,22 +255,6 @@ mod tests {
             growth.grow(&Context::default());
         }
         growth
-    }
-
-    #[test]
-    fn packed_atlases_come_back_and_damage_is_noticed() {
-        let atlas = Atlas::from_growth(&grown(9));
-        for atlas in [atlas.pruned(1, |quads, _| quads <= 14), atlas] {
-            let mut bytes = Vec::new();
-            atlas.write_packed(&mut bytes).unwrap();
-            assert_eq!(Atlas::read_packed(&bytes).unwrap(), atlas);
-            for at in 0..bytes.len() {
-                let mut bad = bytes.clone();
-                bad[at] ^= 0x10;
-                assert!(Atlas::read_packed(&bad).is_err(), "byte {at}");
-                assert!(Atlas::read_packed(&bytes[..at]).is_err());
-            }
-        }
     }
 
     #[test]

@@ -95,8 +95,7 @@ pub fn complete(
         missing: 0,
         stop: StopReason::Finished,
     };
-    let names: FxHashSet<u64> =
-        targets.iter().map(|t| short_hash(t.class)).chain(kept.hashes.iter().copied()).collect();
+    let names: FxHashSet<u64> = targets.iter().map(|t| short_hash(t.class)).chain(kept.hashes()).collect();
     for breadth in EFFORTS.iter().take(options.efforts) {
         shorten(&mut known, &targets, breadth, options.max_hexes, ctx);
         if let Some(stop) = ctx.stop() {
@@ -173,7 +172,8 @@ mod tests {
         assert_eq!((report.targets, report.missing), (16, 0), "{report:?}");
         assert_eq!(run(3), (atlas.clone(), report));
         for atlas_before in [&kept, &grown.pruned(1, |quads, _| quads <= 12)] {
-            let named = (0..atlas_before.n_states() as u32).filter(|&s| atlas_before.hashes[s as usize] != 0);
+            let hashes = atlas_before.hashes();
+            let named = (0..atlas_before.n_states() as u32).filter(|&s| hashes[s as usize] != 0);
             for state in named {
                 let ball = crate::Ball::replay(atlas_before.flips_to(state)).unwrap();
                 let best = atlas.balls_for(&ball.boundary_only()).next().expect("a class that is kept");

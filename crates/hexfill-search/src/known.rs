@@ -32,7 +32,10 @@ impl Known {
         for level in 1..atlas.level_starts.len() {
             let start = atlas.level_starts[level] as usize;
             let end = atlas.level_starts.get(level + 1).map_or(atlas.n_states(), |&e| e as usize);
-            growth.replay_level(&atlas.parents[start..end], &atlas.flips[start..end])?;
+            let states = start as u32..end as u32;
+            let parents: Vec<u32> = states.clone().map(|s| atlas.states.parent(s)).collect();
+            let flips: Vec<Flip> = states.map(|s| atlas.states.flip(s)).collect();
+            growth.replay_level(&parents, &flips)?;
             hexes.resize(end, level as u8 + 1);
         }
         Some(Self { growth, hexes })

@@ -35,6 +35,8 @@
 mod atlas;
 mod atlas_file;
 mod atlas_index;
+mod atlas_packed;
+mod atlas_states;
 mod backward;
 mod ball;
 mod canonical;
