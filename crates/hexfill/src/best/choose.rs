@@ -18,7 +18,7 @@ use crate::fill::judged::verify;
 use crate::fill::last_resort::{LastResort, leaving_time};
 use crate::fill::maker::Maker;
 use crate::fill::options::{Effort, FillOptions, Prefer, Strategy};
-use crate::fill::search::search;
+use crate::fill::search::{search, smallest_on_record};
 use crate::fill::shelled::shelled;
 use crate::fill::stored::stored_mesh;
 use crate::place::placed::Placed;
@@ -27,7 +27,7 @@ use crate::problem::Problem;
 use crate::simplify::carried_positions;
 use hexfill_embed::quick_star_bound;
 use hexfill_lay::lay;
-use hexfill_mesh::{Context, HexMesh, StopReason, VertexId, hex_isomorphism};
+use hexfill_mesh::{Context, HexMesh, StopReason, VertexId, hex_isomorphism, surface_symmetry_order};
 use hexfill_search::MAX_QUADS;
 use hexfill_shell::{CutLayers, Layer, SplitOptions, cut_boundary_layers, split_stars};
 
@@ -147,14 +147,44 @@ impl<'a> Trial<'a> {
         if self.is_small() {
             // One cavity: the surface itself.
             self.flip_inward(1)?;
+            self.look_up_smallest()?;
         }
         let Some(mesh) = stored_mesh(&self.problem.surface) else { return Ok(()) };
-        let is_new = self.best.as_ref().is_none_or(|(_, known, _)| hex_isomorphism(&known.mesh, &mesh) == Ok(None));
-        if is_new && mesh.n_hexes() as u64 <= u64::from(self.options.max_hexes) {
+        if self.is_new(&mesh) && mesh.n_hexes() as u64 <= u64::from(self.options.max_hexes) {
             verify(&self.problem.surface, &mesh, Route::Catalogue)?;
             self.consider(Filled::by(Route::Catalogue, mesh))?;
         }
         Ok(())
+    }
+
+    /// Considers the smallest filling on record, too, unless its star bound says that it cannot be better than what is there.
+    fn look_up_smallest(&mut self) -> Result<(), FillError> {
+        let is_done = self.options.effort == Effort::Fast && self.is_enough();
+        if self.options.atlas.is_some() || self.options.layers.is_some() || is_done || self.ctx.stop().is_some() {
+            return Ok(());
+        }
+        let surface = &self.problem.surface;
+        let Some(filled) = smallest_on_record(surface, self.options, self.ctx)?.filter(|f| self.is_new(&f.mesh)) else {
+            return Ok(());
+        };
+        // On a surface with symmetries the mesh may lie another way, which has another bound.
+        let has_one_way = surface_symmetry_order(surface) == 1;
+        if has_one_way
+            && let Some((rank, ..)) = &self.best
+            && let Ok(bound) = quick_star_bound(&filled.mesh, self.boundary)
+        {
+            let reaches = (u8::from(bound < GOOD), within(filled.mesh.n_hexes(), bound, self.options.prefer));
+            if bound <= NO_ROOM || *rank <= reaches {
+                self.seen.push(Candidate::new(&filled, Outcome::Bounded(bound)));
+                return Ok(());
+            }
+        }
+        self.consider(filled)
+    }
+
+    /// Whether a mesh is not the best one, renumbered.
+    fn is_new(&self, mesh: &HexMesh) -> bool {
+        self.best.as_ref().is_none_or(|(_, known, _)| hex_isomorphism(&known.mesh, mesh) == Ok(None))
     }
 
     /// Shells the surface.

@@ -3,7 +3,7 @@
 use crate::fill::attempt::Attempt;
 use crate::fill::error::FillError;
 use crate::fill::filled::{FillResult, Filled, Route};
-use crate::fill::judged::accept;
+use crate::fill::judged::{accept, verify};
 use crate::fill::maker::Maker;
 use crate::fill::options::{FillOptions, Strategy};
 use hexfill_construct::CellChoice;
@@ -54,6 +54,20 @@ fn suited(surface: &QuadSurface, options: &FillOptions) -> &'static Atlas {
     let wants_fewest = options.cells == CellChoice::Fewest && options.count == 1;
     let is_unknown = || options.inward_cavities == 1 && !knows(Atlas::embedded());
     if (wants_fewest || is_unknown()) && knows(Atlas::fewest()) { Atlas::fewest() } else { Atlas::embedded() }
+}
+
+/// The smallest filling on record of a small sphere. [`search`] takes one that embeds more often, if there is one; for this surface that may be otherwise.
+pub(crate) fn smallest_on_record(
+    surface: &QuadSurface,
+    options: &FillOptions,
+    ctx: &Context<'_>,
+) -> Result<Option<Filled>, FillError> {
+    let look_up = InwardOptions { max_hexes: options.max_hexes, max_cavities: 1, ..InwardOptions::default() };
+    let outcome = fill_from_atlas(surface, Atlas::fewest(), &look_up, ctx).expect("the caller checked: a small sphere");
+    let Some(filling) = outcome.fillings.into_iter().next() else { return Ok(None) };
+    let filled = Filled::by(Route::Atlas, filling.mesh);
+    verify(surface, &filled.mesh, filled.route)?;
+    Ok(Some(filled))
 }
 
 /// Grows an atlas from one cube until the surface is reached.
