@@ -147,9 +147,10 @@ impl<'a> Trial<'a> {
         if self.is_small() {
             // One cavity: the surface itself.
             self.flip_inward(1)?;
-            self.look_up_smallest()?;
         }
-        let Some(mesh) = stored_mesh(&self.problem.surface) else { return Ok(()) };
+        let Some(mesh) = stored_mesh(&self.problem.surface) else {
+            return if self.is_small() { self.look_up_smallest() } else { Ok(()) };
+        };
         if self.is_new(&mesh) && mesh.n_hexes() as u64 <= u64::from(self.options.max_hexes) {
             verify(&self.problem.surface, &mesh, Route::Catalogue)?;
             self.consider(Filled::by(Route::Catalogue, mesh))?;
