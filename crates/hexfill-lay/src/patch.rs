@@ -106,3 +106,62 @@ impl Patch {
         Some((HexMesh::try_new(points.len(), &hexes).ok()?, points))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hexfill_mesh::cube::{CORNER_NEIGHBOURS, FACETS};
+    use hexfill_mesh::generate::grid;
+
+    const N: usize = 12;
+
+    /// N^3 cubes without the one in the middle, surface first; the corners of that one.
+    fn block_with_a_void() -> (OpenMesh, [u32; 8]) {
+        let mesh = grid(N, N, N).unwrap();
+        let on = mesh.boundary_vertices();
+        let mut order: Vec<usize> = (0..mesh.n_vertices()).collect();
+        order.sort_by_key(|&v| !on[v]);
+        let mut name = vec![0; order.len()];
+        (0..).zip(&order).for_each(|(new, &old)| name[old] = new);
+        // Whether x or z runs fastest does not matter here.
+        let m = N + 1;
+        let at = |v: usize| [v % m, v / m % m, v / (m * m)].map(|x| x as f64);
+        let mut hexes: Vec<[u32; 8]> = mesh.hexes_raw().iter().map(|h| h.map(|v| name[v as usize])).collect();
+        let points: Vec<Vector> = order.iter().map(|&v| at(v)).collect();
+        let centre = [N as f64 / 2.0; 3];
+        let middle = hexes.iter().position(|h| {
+            h.iter().all(|&v| {
+                let p = points[v as usize];
+                (0..3).all(|k| p[k] - centre[k] == 0.0 || p[k] - centre[k] == 1.0)
+            })
+        });
+        let gone = hexes.remove(middle.unwrap());
+        let front = FACETS.map(|f| f.map(|i| gone[i])).to_vec();
+        let n_surface = on.iter().filter(|on| **on).count();
+        (OpenMesh { hexes, points, front, apex: centre.map(|x| x + 0.5), forgiven: Vec::new(), n_surface }, gone)
+    }
+
+    #[test]
+    fn a_patch_is_cut_out_and_put_back() {
+        let (open, gone) = block_with_a_void();
+        let patch = Patch::round(&open);
+        // Four rings round a cube, and what lies on their outside stays.
+        assert_eq!((patch.n_hexes(), patch.n_fixed()), (9 * 9 * 9 - 1, 1000 - 512));
+        let laying = patch.laying(&open);
+        assert_eq!(laying.hexes.len(), patch.n_hexes());
+        let mut hexes = laying.hexes.clone();
+        let own = |v: u32| patch.ids.iter().position(|&id| id == v).unwrap() as u32;
+        hexes.push(gone.map(own));
+        let mesh = HexMesh::try_new(laying.points.len(), &hexes).unwrap();
+        let (whole, points) = patch.put_back(&open, &mesh, &laying.points).unwrap();
+        assert_eq!((whole.n_hexes(), points.len()), (N * N * N, open.points.len()));
+        assert_eq!(points[..open.n_surface], open.points[..open.n_surface]);
+        for hex in whole.hexes_raw() {
+            let at = |k: usize| points[hex[k] as usize];
+            for k in 0..8 {
+                let steps = CORNER_NEIGHBOURS[k].map(|j| (0..3).map(|x| (at(j)[x] - at(k)[x]).abs()).sum::<f64>());
+                assert_eq!(steps, [1.0; 3]);
+            }
+        }
+    }
+}
