@@ -33,7 +33,7 @@ const KNOWN: [Known; 8] = [
         published: Some((40, "Verhetsel, Pellerin, Remacle 2018")),
         exhausted: Some(22),
     },
-    Known { name: "schneiders-pyramid", published: Some((36, "Xiang, Liu 2018")), exhausted: Some(18) },
+    Known { name: "schneiders-pyramid", published: Some((36, "Xiang, Liu 2018")), exhausted: Some(19) },
     Known { name: "geode", published: Some((34, "joneuhauser/hex-templates 2026")), exhausted: None },
     Known { name: "buffer-cube-20", published: Some((40, "Verhetsel, Pellerin, Remacle 2019")), exhausted: None },
     Known { name: "buffer-cube-22", published: Some((40, "Verhetsel, Pellerin, Remacle 2019")), exhausted: None },

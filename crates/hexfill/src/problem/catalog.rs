@@ -53,7 +53,7 @@ static ENTRIES: &[Entry] = &[
         name: "schneiders-pyramid",
         title: "Schneiders' pyramid: square base in 4 quads, each side in 3; 16 quads",
         source: "open problem posed by R. Schneiders, 1996; coordinates: Johnson solid J1 scaled by 2",
-        best: "36 hexes (Verhetsel, Pellerin, Remacle 2019; the same number here); at least 19 are needed (complete search here; 17 published)",
+        best: "36 hexes (Verhetsel, Pellerin, Remacle 2019; the same number here); at least 20 are needed (complete search here; 17 published)",
         file: obj!("schneiders-pyramid"),
         format: Format::Obj,
         mesh: mesh!("schneiders-pyramid"),
