@@ -92,6 +92,8 @@ enum Command {
     Enumerate(commands::enumerate::EnumerateArgs),
     /// List every hex mesh of a sphere with at most so many hexes, or prove that there is none.
     Search(commands::search::SearchArgs),
+    /// The fewest hexes known for the catalogue's problems, and how few are proved to be needed.
+    Records(commands::records::RecordsArgs),
     /// Print shell completions.
     Completions(commands::completions::CompletionsArgs),
     /// Print a manual page.
@@ -156,6 +158,7 @@ fn run() -> ExitCode {
         Command::Atlas(args) => commands::atlas::run(args, &console, &ctx),
         Command::Enumerate(args) => commands::enumerate::run(args, rayon::current_num_threads(), &console, &ctx),
         Command::Search(args) => commands::search::run(args, rayon::current_num_threads(), &console, &ctx),
+        Command::Records(args) => commands::records::run(args, &console, &ctx),
         Command::Completions(args) => commands::completions::run(args),
         Command::Man(args) => commands::man::run(args),
     };

@@ -41,7 +41,7 @@ fn the_page_lists_every_key_and_no_other() {
     let sick = |name: &str| root.join("corpus/sick").join(name).to_str().unwrap().to_owned();
     let (odd, crossing, open) = (sick("odd_ball.obj"), sick("crossing_boxes.obj"), sick("open_box.obj"));
     let dir = tempfile::tempdir().unwrap();
-    let runs: [(&str, &[&[&str]]); 5] = [
+    let runs: [(&str, &[&[&str]]); 6] = [
         (
             "fill",
             &[
@@ -57,6 +57,7 @@ fn the_page_lists_every_key_and_no_other() {
         ("info", &[&["info", ":schneiders-pyramid"], &["info", &odd]]),
         ("doctor", &[&["doctor", &odd, "--fix", "-o", "even.obj"], &["doctor", &open]]),
         ("search", &[&["search", ":cube", "--max-hexes", "7"]]),
+        ("records", &[&["records"]]),
     ];
     for (section, commands) in runs {
         let mut seen = BTreeSet::new();

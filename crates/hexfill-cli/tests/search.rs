@@ -39,6 +39,20 @@ fn found_is_0_exhausted_is_1_stopped_is_3() {
 }
 
 #[test]
+fn meshes_found_are_written_and_fill_the_surface() {
+    let dir = tempfile::tempdir().unwrap();
+    let (code, found) = report(dir.path(), &["search", ":cube", "--max-hexes", "7", "-o", "found/here"], &[]);
+    assert_eq!(code, 0);
+    for (file, mesh) in ["1-1", "7-1"].iter().zip(found["meshes"].as_array().unwrap()) {
+        let file = format!("found/here/{file}.json");
+        let written = json(&std::fs::read_to_string(dir.path().join(&file)).unwrap());
+        assert_eq!(written["hexes"], mesh["hexes"]);
+        let (code, _, err) = hexfill(dir.path(), &["check", &file, "--surface", ":cube"]);
+        assert_eq!(code, 0, "{err}");
+    }
+}
+
+#[test]
 fn threads_and_parts_do_not_show() {
     let dir = tempfile::tempdir().unwrap();
     for (surface, hexes, symmetry) in

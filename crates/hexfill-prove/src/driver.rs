@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use std::path::Path;
 
 /// Version of the ledger's format and of the tree: sums of two versions do not compare.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 
 /// What a ledger is about.
 #[derive(Clone, PartialEq, Eq, Debug, Serialize, Deserialize)]

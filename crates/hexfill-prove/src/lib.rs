@@ -22,11 +22,14 @@
 
 mod bound;
 mod code;
+mod corners;
 mod cover;
 mod driver;
 mod error;
 mod journal;
 mod mesh;
+mod mirror;
+mod orbit;
 mod plan;
 mod state;
 mod symmetry;

@@ -2,7 +2,7 @@
 
 use crate::error::ProveError;
 use crate::state::Hex;
-use hexfill_check::{Judged, Level, Options, Parts, Rule, judge};
+use hexfill_check::{Ball, Judged, Level, Options, Parts, Rule, judge};
 use hexfill_mesh::{Context, HexMesh, QuadSurface, hex_signature};
 
 /// A finished mesh: hexes over the surface's vertex ids, interior vertices after them.
@@ -25,7 +25,9 @@ impl Mesh {
 /// no defect either.
 const PINCHED: [Rule; 3] = [Rule::VertexPinched, Rule::VertexLinkNotDisk, Rule::VertexLinkNotSphere];
 
-/// The signature of a mesh that the judge accepts to level 3, boundary and all; `None` if vertices are pinched.
+/// The signature of a mesh that the judge accepts to level 3, boundary and all, and does not find to be no ball; `None` if vertices are pinched,
+/// or if the homology over GF(2) is not a ball's. (Euler's formula and the links do not tell a ball from, say, a punctured projective space; the
+/// tree leads to both.)
 ///
 /// # Errors
 /// [`ProveError::Refused`] if it breaks another rule: the search was wrong.
@@ -40,6 +42,9 @@ pub(crate) fn signature_of(surface: &QuadSurface, mesh: &Mesh) -> Result<Option<
             return Ok(None);
         }
         return Err(refused(report.broken_rules().join(", ")));
+    }
+    if report.facts.ball == Some(Ball::No) {
+        return Ok(None);
     }
     let mesh = HexMesh::try_new(mesh.n_vertices, &mesh.hexes).map_err(|e| refused(e.to_string()))?;
     Ok(Some(hex_signature(&mesh).map_err(|e| refused(e.to_string()))?))

@@ -257,6 +257,31 @@ impl State {
             || !self.quads[usize::from(self.words[usize::from(a) * MAX_VERTICES + usize::from(b)])].contains(&corner)
     }
 
+    /// The facets on the edge of an open quad's dart that a hex which covers the quad may be glued on there: of each the vertex next to the
+    /// dart's origin, and the one next to its target.
+    pub(crate) fn beyond(&self, dart: u16) -> (u128, u128) {
+        let quad = self.quad(dart / 4);
+        let [u, v] = [0, 1].map(|k| quad[usize::from((dart + k) % 4)]);
+        if self.open_at_edge(u, v) == 2 {
+            let t = self.twin(dart);
+            let other = self.quad(t / 4);
+            return (1 << other[usize::from((t + 2) % 4)], 1 << other[usize::from((t + 3) % 4)]);
+        }
+        let (mut by_origin, mut by_target) = (0, 0);
+        let mut across = self.rows[OPEN_DIAGONAL + usize::from(v)];
+        while across != 0 {
+            let x = across.trailing_zeros() as usize;
+            across &= across - 1;
+            let other = self.quads[usize::from(self.words[usize::from(v) * MAX_VERTICES + x])];
+            let at = other.iter().position(|&w| w == v).unwrap_or(0);
+            if other[(at + 1) % 4] == u {
+                by_origin |= 1 << x;
+                by_target |= 1 << other[(at + 3) % 4];
+            }
+        }
+        (by_origin, by_target)
+    }
+
     /// Which vertices can complete a facet with the diagonal `a`, `b`: those of the quad that has it, or any.
     #[inline]
     pub(crate) fn fourth(&self, a: u8, b: u8) -> u128 {

@@ -3,6 +3,7 @@
 //! An automorphism of a ball mesh is determined by what it does on the boundary, so a group of automorphisms of the mesh *is* a subgroup
 //! of the boundary's automorphism group; how it acts on an interior vertex is told by the vertex's stabilizer.
 
+use crate::mirror::{Mirror, Sides, halves};
 use crate::state::MAX_VERTICES;
 use hexfill_mesh::{QuadSurface, bipartition, surface_automorphisms};
 
@@ -20,6 +21,7 @@ pub struct Symmetries {
     product: Vec<Vec<u8>>,
     /// Per element the number of quads it fixes, of vertices it fixes: what tells elements apart in words.
     fixed: Vec<(usize, usize)>,
+    quads: Vec<[u8; 4]>,
 }
 
 /// A set of elements, closed under products.
@@ -48,6 +50,7 @@ impl Symmetries {
             elements,
             product,
             fixed,
+            quads: surface.quads().iter().map(|q| q.map(|v| v.0 as u8)).collect(),
         })
     }
 
@@ -188,7 +191,21 @@ pub(crate) struct Action {
     inverse: Vec<usize>,
     /// Per element the vertices it fixes.
     fixed: Vec<u128>,
+    /// Per vertex the elements that fix it.
+    fixers: [u64; MAX_VERTICES],
     stabilizers: Vec<Stabilizer>,
+    mirrors: Vec<Mirror>,
+    /// Per element and mirror, the mirror that the element carries to it, and whether it carries first to second sides.
+    carried: Vec<Vec<(u8, bool)>>,
+    /// Elements that are neither mirrors nor products of two mirrors that commute.
+    others: Vec<u8>,
+}
+
+/// A new orbit of vertices: what fixes its first vertex, and on which side of the mirrors that vertex is.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct NewOrbit {
+    pub stabilizer: u8,
+    pub sides: Sides,
 }
 
 impl Action {
@@ -207,24 +224,67 @@ impl Action {
             })
             .collect();
         let swaps: Vec<bool> = elements.iter().map(|&g| symmetries.swaps[g]).collect();
+        let inverse: Vec<usize> =
+            product.iter().map(|row: &Vec<u8>| row.iter().position(|&g| g == 0).unwrap_or(0)).collect();
+        let reflects: Vec<bool> = elements.iter().map(|&g| symmetries.reflects[g]).collect();
+        let n = symmetries.elements[0].len();
+        let mirrors: Vec<Mirror> = (0..elements.len())
+            .filter(|&g| reflects[g] && product[g][g] == 0)
+            .filter_map(|g| halves(&symmetries.quads, &image[g][..n]).map(|sides| Mirror { element: g, sides }))
+            .collect();
+        let pairs = || mirrors.iter().flat_map(|a| mirrors.iter().map(move |b| (a.element, b.element)));
+        // A product of two mirrors turns the ball round an arc between the two points of the boundary where the mirrors cross. Each of the
+        // mirrors carries the arc to itself and its ends to themselves, so it fixes the arc: what the product fixes they fix.
+        let can_fix = |t: u64| {
+            pairs().all(|(a, b)| a == b || t >> product[a][b] & 1 == 0 || (t >> a & 1 == 1 && t >> b & 1 == 1))
+        };
         let stabilizers = symmetries
             .subgroups()
             .into_iter()
             // What exchanges the colours fixes no vertex.
             .filter(|t| t & !s == 0 && members(*t).all(|g| !symmetries.swaps[g]))
-            .map(|t| {
-                let t: Vec<u8> = members(t).map(|g| index(g as u8)).collect();
-                Stabilizer::new(&product, &t)
-            })
+            .map(|t| members(t).map(|g| index(g as u8)).collect::<Vec<u8>>())
+            .filter(|t| can_fix(t.iter().fold(0, |set, &g| set | 1 << g)))
+            .map(|t| Stabilizer::new(&product, &t))
             .collect();
-        let inverse = product.iter().map(|row: &Vec<u8>| row.iter().position(|&g| g == 0).unwrap_or(0)).collect();
-        let reflects = elements.iter().map(|&g| symmetries.reflects[g]).collect();
-        let n = symmetries.elements[0].len();
+        let others = (1..elements.len())
+            .filter(|&g| {
+                let is = |(a, b): (usize, usize)| {
+                    usize::from(product[a][b]) == g && usize::from(product[b][a]) == g || a == g
+                };
+                !pairs().any(is)
+            })
+            .map(|g| g as u8)
+            .collect();
+        let carried = (0..elements.len()).map(|g| carried(g, &mirrors, &image[g], &product, inverse[g])).collect();
+        let mut fixers = [0; MAX_VERTICES];
+        for (g, image) in image.iter().enumerate() {
+            (0..n).filter(|&v| usize::from(image[v]) == v).for_each(|v| fixers[v] |= 1 << g);
+        }
         let fixed = image
             .iter()
             .map(|image| (0..n).filter(|&v| usize::from(image[v]) == v).fold(0, |set, v| set | 1 << v))
             .collect();
-        Self { image, reflects, swaps, product, inverse, fixed, stabilizers }
+        Self { image, reflects, swaps, product, inverse, fixed, fixers, stabilizers, mirrors, carried, others }
+    }
+
+    /// The mirrors of the group.
+    #[inline]
+    pub(crate) fn mirrors(&self) -> &[Mirror] {
+        &self.mirrors
+    }
+
+    /// Elements that are neither mirrors nor products of two mirrors that commute. (A hex that one of these does not keep lies on one side of
+    /// a mirror and its image on the other: what the two share is on the mirrors.)
+    #[inline]
+    pub(crate) fn others(&self) -> &[u8] {
+        &self.others
+    }
+
+    /// The elements that fix a vertex.
+    #[inline]
+    pub(crate) fn fixers(&self, v: u8) -> u64 {
+        self.fixers[usize::from(v)]
     }
 
     /// Order of the group.
@@ -275,18 +335,41 @@ impl Action {
 
     /// Lets the group act on a new orbit: vertices `first..first + orbit_size`. Calls `colour` with the place in the orbit and whether its
     /// colour differs from the first vertex's.
-    pub(crate) fn extend(&mut self, first: usize, stabilizer: usize, mut colour: impl FnMut(usize, bool)) {
-        let s = &self.stabilizers[stabilizer];
+    pub(crate) fn extend(&mut self, first: usize, orbit: NewOrbit, mut colour: impl FnMut(usize, bool)) {
+        let s = &self.stabilizers[usize::from(orbit.stabilizer)];
         for (i, &r) in s.representative.iter().enumerate() {
-            colour(i, self.swaps[usize::from(r)]);
+            let r = usize::from(r);
+            colour(i, self.swaps[r]);
+            let bit = 1 << (first + i);
+            self.fixers[first + i] = 0;
             for g in 0..self.image.len() {
-                let coset = s.coset[usize::from(self.product[g][usize::from(r)])];
+                let coset = s.coset[usize::from(self.product[g][r])];
                 self.image[g][first + i] = first as u8 + coset;
-                let bit = 1 << (first + i);
-                self.fixed[g] = if usize::from(coset) == i { self.fixed[g] | bit } else { self.fixed[g] & !bit };
+                let fixes = usize::from(coset) == i;
+                self.fixed[g] = if fixes { self.fixed[g] | bit } else { self.fixed[g] & !bit };
+                self.fixers[first + i] |= u64::from(fixes) << g;
+            }
+            for (mirror, &(from, flip)) in self.mirrors.iter_mut().zip(&self.carried[r]) {
+                let side = orbit.sides.of(usize::from(from)).map(|second| usize::from(second != flip));
+                for (k, set) in mirror.sides.iter_mut().enumerate() {
+                    *set = if side == Some(k) { *set | bit } else { *set & !bit };
+                }
             }
         }
     }
+}
+
+/// Per mirror the one that an element carries to it, and whether it carries its first side to the second one.
+fn carried(g: usize, mirrors: &[Mirror], image: &[u8], product: &[Vec<u8>], inverse: usize) -> Vec<(u8, bool)> {
+    mirrors
+        .iter()
+        .map(|to| {
+            let from = product[inverse][usize::from(product[to.element][g])];
+            let k = mirrors.iter().position(|m| m.element == usize::from(from)).expect("images of mirrors are mirrors");
+            let v = image[mirrors[k].sides[0].trailing_zeros() as usize];
+            (k as u8, to.sides[1] >> v & 1 == 1)
+        })
+        .collect()
 }
 
 impl Stabilizer {

@@ -4,7 +4,8 @@
 //! each mesh (its interior vertices unnamed) is met once. Nothing is random, and nothing depends on what was searched before.
 
 use crate::bound::{euler_rest, most_new_vertices};
-use crate::cover::{Allowance, Cover, covers, place_orbit};
+use crate::cover::{Allowance, Cover, covers};
+use crate::orbit::place_orbit;
 use crate::state::{Hex, MAX_QUADS, State};
 use crate::symmetry::Action;
 use hexfill_mesh::{Context, StopReason};
@@ -95,7 +96,7 @@ impl Walker {
     fn branches(&mut self) -> Vec<Cover> {
         let left = self.max_hexes - self.state.counts.hexes;
         let Some(new_vertices) = most_new_vertices(&self.state, left) else { return Vec::new() };
-        let allowance = Allowance { new_vertices, excess: 2 * left + euler_rest(&self.state) };
+        let allowance = Allowance { new_vertices, excess: 2 * left + euler_rest(&self.state), hexes: left };
         // Those that had few covers before first: the fewer are known, the sooner counting stops. Of equal ones the oldest quad is
         // taken, so that the choice does not depend on the order.
         let mut quads: Vec<u16> = self.state.open_quads().filter(|&q| self.stands[usize::from(q)]).collect();
@@ -184,9 +185,9 @@ fn mix(x: u64) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::symmetry::Symmetries;
+    use crate::symmetry::{Subgroup, Symmetries};
     use hexfill_mesh::cube::POSITIONS;
-    use hexfill_mesh::parse_surface_signature;
+    use hexfill_mesh::{HexAutomorphism, HexMesh, QuadSurface, hex_automorphisms, parse_surface_signature};
     use hexfill_search::{Atlas, FillOptions, fill_from_atlas};
 
     /// The 48 ways a cube lies on itself.
@@ -201,11 +202,86 @@ mod tests {
         axes.into_iter().flat_map(|a| (0..8).map(move |flip| turned(a, flip))).collect()
     }
 
-    /// The bounds and the choice of covers cut no way to a mesh that exists: along each known mesh the tree has a branch at every node, and one of
-    /// the branches is the mesh's own hex.
+    /// Whether the tree has a branch at every node along a mesh that has the group's symmetries, and one of the branches is the mesh's own
+    /// hex with its images. `Err` says where it ends.
+    fn follow(surface: &QuadSurface, mesh: &HexMesh, group: Subgroup, more: usize) -> Result<(), String> {
+        let action = Action::new(&Symmetries::of(surface).unwrap(), group);
+        let n = surface.n_vertices();
+        let automorphisms = hex_automorphisms(mesh).unwrap();
+        // Per element of the group what it does with the mesh's vertices.
+        let images: Vec<Vec<u32>> = (0..action.order())
+            .map(|g| {
+                let is = |a: &&HexAutomorphism| (0..n).all(|v| a.vertices[v].0 == u32::from(action.image(g, v as u8)));
+                automorphisms.iter().find(is).unwrap().vertices.iter().map(|v| v.0).collect()
+            })
+            .collect();
+        let mut walker = Walker::new(State::new(surface).unwrap(), action, mesh.n_hexes() + more);
+        let hexes = mesh.hexes_raw();
+        // Per vertex of the state, the vertex of the mesh.
+        let mut vertex: Vec<u32> = (0..n as u32).collect();
+        while !walker.is_finished() {
+            let here = walker.now();
+            let mut next = None;
+            for cover in walker.branches() {
+                for (hex, turn) in hexes.iter().flat_map(|hex| turns().into_iter().map(move |turn| (hex, turn))) {
+                    let fits = (0..8).all(|k| match vertex.get(usize::from(cover.hex[k])) {
+                        Some(&v) => v == hex[turn[k]],
+                        None => !vertex.contains(&hex[turn[k]]),
+                    });
+                    if fits && walker.place(&cover) {
+                        next = extended(&vertex, &walker, &images, &cover.hex, &turn.map(|k| hex[k]));
+                    }
+                    if next.is_some() {
+                        break;
+                    }
+                    walker.undo(here);
+                }
+                if next.is_some() {
+                    break;
+                }
+            }
+            vertex = next.ok_or_else(|| format!("after {} hexes", walker.hexes().len()))?;
+        }
+        assert_eq!(walker.hexes().len(), mesh.n_hexes());
+        Ok(())
+    }
+
+    /// The mesh's vertices for those just made; `None` if the group does not act on them as it does on the mesh's.
+    fn extended(
+        vertex: &[u32],
+        walker: &Walker,
+        images: &[Vec<u32>],
+        hex: &Hex,
+        of_mesh: &[u32; 8],
+    ) -> Option<Vec<u32>> {
+        let mut out: Vec<Option<u32>> = vertex.iter().map(|&v| Some(v)).collect();
+        out.resize(walker.state.n(), None);
+        for (&v, &w) in hex.iter().zip(of_mesh) {
+            for (g, image) in images.iter().enumerate() {
+                let (v, w) = (usize::from(walker.action.image(g, v)), image[w as usize]);
+                if *out[v].get_or_insert(w) != w {
+                    return None;
+                }
+            }
+        }
+        let out: Option<Vec<u32>> = out.into_iter().collect();
+        out.filter(|out| (0..out.len()).all(|i| !out[..i].contains(&out[i])))
+    }
+
+    /// The subgroups of the boundary's automorphisms that a mesh has.
+    fn groups(surface: &QuadSurface, mesh: &HexMesh) -> Vec<Subgroup> {
+        let symmetries = Symmetries::of(surface).unwrap();
+        let image = |a: &HexAutomorphism| (0..surface.n_vertices()).map(|v| a.vertices[v].0 as u8).collect();
+        let own: Vec<Vec<u8>> = hex_automorphisms(mesh).unwrap().iter().map(image).collect();
+        let own = symmetries.generated_by(&own).unwrap();
+        symmetries.subgroups().into_iter().filter(|s| s & !own == 0).collect()
+    }
+
+    /// The bounds and the choice of covers cut no way to a mesh that exists, under any of its symmetries.
     #[test]
     fn the_way_to_a_known_mesh_is_never_cut() {
         // The spindle, the pyramid, the geode, the buffer cube of 22 quads, and one hex more than there are.
+        let mut orders = Vec::new();
         for (signature, more) in [
             ("Q1:00101005101312", 0),
             ("Q1:000000070017100700171605141317", 0),
@@ -217,39 +293,11 @@ mod tests {
             let ctx = Context::default();
             let made = fill_from_atlas(&surface, Atlas::embedded(), &FillOptions::default(), &ctx).unwrap();
             let mesh = &made.fillings[0].mesh;
-            let action = Action::new(&Symmetries::of(&surface).unwrap(), 1);
-            let mut walker = Walker::new(State::new(&surface).unwrap(), action, mesh.n_hexes() + more);
-            let mut hexes = mesh.hexes_raw();
-            // Per vertex of the state, the vertex of the mesh.
-            let mut vertex: Vec<u32> = (0..surface.n_vertices() as u32).collect();
-            while !walker.is_finished() {
-                let branches = walker.branches();
-                let own = branches.iter().find_map(|cover| {
-                    hexes.iter().enumerate().find_map(|(h, hex)| {
-                        let fits = |turn: &[usize; 8]| {
-                            (0..8).all(|k| match vertex.get(usize::from(cover.hex[k])) {
-                                Some(&v) => v == hex[turn[k]],
-                                None => !vertex.contains(&hex[turn[k]]),
-                            })
-                        };
-                        turns().into_iter().find(fits).map(|turn| (*cover, h, turn))
-                    })
-                });
-                let (cover, h, turn) = own.unwrap_or_else(|| {
-                    panic!(
-                        "{signature}: {} hexes laid, {} branches, none of the mesh",
-                        walker.hexes().len(),
-                        branches.len()
-                    )
-                });
-                let hex = hexes.swap_remove(h);
-                assert!(walker.place(&cover), "{signature}: the mesh's own hex does not fit");
-                // New vertices are numbered as they come.
-                while let Some(k) = (0..8).find(|&k| usize::from(cover.hex[k]) == vertex.len()) {
-                    vertex.push(hex[turn[k]]);
-                }
+            for group in groups(&surface, mesh) {
+                follow(&surface, mesh, group, more).unwrap_or_else(|e| panic!("{signature} {group:x}: {e}"));
+                orders.push(group.count_ones());
             }
-            assert!(hexes.is_empty() && walker.hexes().len() == mesh.n_hexes());
         }
+        println!("orders of the groups imposed: {orders:?}");
     }
 }

@@ -12,6 +12,7 @@ pub(crate) mod fill;
 pub(crate) mod gallery;
 pub(crate) mod info;
 pub(crate) mod man;
+pub(crate) mod records;
 pub(crate) mod search;
 pub(crate) mod simplify;
 pub(crate) mod view;

@@ -4,14 +4,15 @@ use super::enumerate::parse_part;
 use crate::console::Console;
 use crate::exit::Exit;
 use crate::files;
-use anyhow::bail;
+use anyhow::{Context as _, bail};
+use hexfill::io::MeshData;
 use hexfill::mesh::{HexMesh, hex_signature, is_shellable};
 use hexfill::unstable::ledger::{Chunk, default_chunks};
 use hexfill::unstable::prove::{Mesh, Plan, Problem, ProveError, Searched, Subgroup, merge, search};
 use hexfill::{Context, StopReason};
 use serde_json::json;
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Flags of `search`.
@@ -37,6 +38,9 @@ pub(crate) struct SearchArgs {
     /// Print only the number of meshes by number of hexes, not their signatures.
     #[arg(long)]
     count_all: bool,
+    /// Write each mesh found into this folder (JSON, connectivity; the boundary's vertices first), named by its number of hexes.
+    #[arg(short, long, value_name = "DIR", conflicts_with = "part")]
+    output: Option<PathBuf>,
     /// Keep a ledger of finished chunks here; the same command goes on where a killed run stopped.
     #[arg(long, value_name = "DIR")]
     checkpoint: Option<PathBuf>,
@@ -62,6 +66,9 @@ pub(crate) fn run(args: &SearchArgs, threads: usize, console: &Console, ctx: &Co
     let group = group_of(&args.symmetry, &problem, &classes)?;
     let problem = problem.with_group(group);
     let question = Question::new(args, &problem);
+    if let Some(folder) = &args.output {
+        std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
+    }
     let plan = match Plan::prepare(problem, ctx) {
         Err(ProveError::Stopped { reason }) => return stopped(&question, reason, console),
         plan => plan?,
@@ -80,6 +87,9 @@ pub(crate) fn run(args: &SearchArgs, threads: usize, console: &Console, ctx: &Co
         console.note(format!("a torn last line of {} bytes was dropped from the ledger", searched.dropped_bytes));
     }
     let answer = Answer::new(question, &plan, &searched, part)?;
+    if let Some(folder) = &args.output {
+        answer.write(folder, &input.surface().quads_raw(), console)?;
+    }
     if console.json {
         console.print_json(&answer.json(started))?;
     } else {
@@ -195,6 +205,25 @@ impl<'a> Answer<'a> {
     /// "No" is proved by the whole search alone.
     fn exit(&self) -> Exit {
         if self.is_whole() && self.meshes.is_empty() { Exit::No } else { Exit::Done }
+    }
+
+    /// Writes the meshes listed, each with the surface it fills: `36-1.json`, `36-2.json`, ... in the order of the list.
+    fn write(&self, folder: &Path, quads: &[[u32; 4]], console: &Console) -> anyhow::Result<()> {
+        let mut last = (0, 0);
+        for (_, mesh) in &self.meshes {
+            let n = mesh.hexes.len();
+            last = if last.0 == n { (n, last.1 + 1) } else { (n, 1) };
+            let data = MeshData {
+                quads: quads.to_vec(),
+                hexes: mesh.hexes.clone(),
+                has_coordinates: false,
+                ..MeshData::default()
+            };
+            let path = folder.join(format!("{n}-{}.json", last.1));
+            files::write_data(&path.to_string_lossy(), None, &data, console)?;
+        }
+        console.say(format!("written to {}: {} meshes", folder.display(), self.meshes.len()));
+        Ok(())
     }
 
     /// The result in one line.

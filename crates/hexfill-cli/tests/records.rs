@@ -1,0 +1,18 @@
+//! `hexfill records`: the table, and that every stored mesh stands up to the judge.
+
+mod common;
+
+use common::{hexfill, json};
+
+#[test]
+fn every_record_is_a_ball_with_its_boundary() {
+    let dir = tempfile::tempdir().unwrap();
+    let (code, out, err) = hexfill(dir.path(), &["records", "--verify", "--json"]);
+    assert_eq!(code, 0, "{err}");
+    for row in json(&out)["records"].as_array().unwrap() {
+        assert_eq!(row["verified"], true, "{row}");
+        let hexes = row["hexes"].as_u64().unwrap();
+        assert!(row["needed"].as_u64().is_none_or(|needed| needed <= hexes), "{row}");
+        assert!(row["published"].as_u64().is_none_or(|published| hexes <= published), "{row}");
+    }
+}
