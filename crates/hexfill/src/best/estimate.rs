@@ -128,10 +128,10 @@ mod tests {
         let bent = cells.into_iter().map(|[x, y, z]| [x, y, z].map(f64::from)).map(|[x, y, z]| [x + 0.1 * y * y, y, z]);
         let problem = Problem::new("bent", surface, bent.collect()).unwrap();
         let made = told(&problem).unwrap();
-        assert_eq!(made.engines, ["shelling", "construction"]);
+        assert_eq!(made.engines, ["shelling", "laying", "construction"]);
         assert_eq!(
             made.to_string(),
-            "about 0.2 to 12 s of processor time and 150 to 2400 hexes, by shelling, then construction (each only if none before brings a good mesh)"
+            "about 0.2 to 12 s of processor time and 150 to 2400 hexes, by shelling, then laying, then construction (each only if none before brings a good mesh)"
         );
         let best = FillOptions::default().with_effort(Effort::Best);
         assert_eq!(estimate(&problem, &best, &PlaceOptions::default()), None);
