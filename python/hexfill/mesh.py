@@ -102,11 +102,11 @@ class _Arrays:
         """What it is: see :func:`hexfill.info`."""
         return json.loads(_native.info(self._data, self.name, running.run()))
 
-    def write(self, path: str | PathLike[str], *, format: str | None = None) -> None:
+    def write(self, path: str | PathLike[str], *, format: str | None = None, quadratic: bool = False) -> None:
         """Writes a file: see :func:`hexfill.write`."""
         from .verbs import written
 
-        written(path, self, format, stacklevel=3)  # type: ignore[arg-type]
+        written(path, self, format, quadratic, stacklevel=3)  # type: ignore[arg-type]
 
     def _given(self) -> _given.Given:
         return {

@@ -46,7 +46,7 @@ pub(super) fn run(
         console.note(note);
     }
     if let Some(output) = &args.output {
-        files::check_mesh_output(output, args.to, data)?;
+        args.writing.check_mesh(output, data)?;
     }
     let options = fill_options(args, None, ctx)?;
     let whole = hexfill::fill_regions(data, regions, &options, &place_options(args), ctx)?;
@@ -107,7 +107,7 @@ fn say(output: &Output, n_regions: usize, args: &FillArgs, console: &Console) {
 fn write(args: &FillArgs, whole: &FilledRegions, console: &Console) -> anyhow::Result<Vec<String>> {
     let mut written = Vec::new();
     if let Some(output) = &args.output {
-        files::write_data(output, args.to, &whole.data, console)?;
+        args.writing.write(output, &whole.data, console)?;
         written.push(output.clone());
     }
     if args.view.is_none() && args.picture.is_none() {
