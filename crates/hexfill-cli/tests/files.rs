@@ -48,6 +48,10 @@ fn names_of_groups_go_through_every_command_and_format() {
         assert!(data.hex_tags.is_some(), "{extension}");
         done(dir.path(), &["check", &name("converted"), "--surface", "in.obj"]);
     }
+    // The viewer names them.
+    done(dir.path(), &["view", "filled.vtu", "--groups", "-o", "groups.html"]);
+    let page = std::fs::read_to_string(dir.path().join("groups.html")).unwrap();
+    assert!(page.contains(r#""names":["Box + inlet","Box + outlet + wall","Box + steel + wall"]"#), "groups by name");
 }
 
 /// Every command that writes cells of second order, in every format that has them: the corners are those of the straight mesh, and it is certified.

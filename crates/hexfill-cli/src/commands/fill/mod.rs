@@ -4,7 +4,7 @@ mod args;
 mod regions;
 mod said;
 
-use crate::commands::view::Shown;
+use crate::commands::view::{Shown, groups};
 use crate::console::Console;
 use crate::exit::Exit;
 use crate::files;
@@ -202,6 +202,7 @@ fn write_mesh(
         points: placed.points(),
         mesh: filled.mesh(),
         values: if args.no_embed { None } else { Shown::by_quality(placed.scaled_jacobians()) },
+        groups: groups(filled.mesh(), &problem.data(), false),
         facts: vec![
             ("made by".to_owned(), filled.route().words().to_owned()),
             ("geometry".to_owned(), placed.report().to_string()),

@@ -2,7 +2,7 @@
 
 use super::args::{FillArgs, fill_options, place_options};
 use super::said::{MeshOutput, say_end, say_mesh};
-use crate::commands::view::Shown;
+use crate::commands::view::{Shown, groups};
 use crate::console::Console;
 use crate::exit::Exit;
 use crate::files;
@@ -121,6 +121,7 @@ fn write(args: &FillArgs, whole: &FilledRegions, console: &Console) -> anyhow::R
         points: &whole.data.points,
         mesh: &mesh,
         values: quality.filter(|values| values.iter().all(|x| x.is_finite())).and_then(Shown::by_quality),
+        groups: groups(&mesh, &whole.data, false),
         facts: vec![("regions".to_owned(), whole.fills.len().to_string())],
     };
     written.extend(shown.write(args.view.clone(), args.picture.clone())?);
