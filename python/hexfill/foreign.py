@@ -88,21 +88,10 @@ def _carried(grid: Any) -> dict[str, Any]:
 
 
 def _poly_data(surface: Any) -> dict[str, Any]:
-    """A PyVista PolyData: a flat list of faces, each with its number of vertices before it."""
-    flat = np.asarray(surface.faces)
-    sides = []
-    quads, others, at, face = [], [], 0, 0
-    if len(flat) and len(flat) % 5 == 0 and (flat[::5] == 4).all():
-        quads, at = flat.reshape(-1, 5)[:, 1:], len(flat)
-        sides = [4] * len(quads)
-    while at < len(flat):
-        n = int(flat[at])
-        vertices = flat[at + 1 : at + 1 + n].tolist()
-        quads.append(vertices) if n == 4 else others.append((face, vertices))
-        sides.append(n)
-        at, face = at + 1 + n, face + 1
+    """A PyVista PolyData."""
+    quads, others, sides = _faces(np.asarray(surface.faces))
     # Vertices and lines come before the faces.
-    is_quad = np.concatenate([np.zeros(surface.n_verts + surface.n_lines, bool), np.array(sides, int) == 4])
+    is_quad = np.concatenate([np.zeros(surface.n_verts + surface.n_lines, bool), np.asarray(sides, int) == 4])
 
     def rows(array: Any, what: str) -> Any:
         return np.asarray(array)[: len(is_quad)][is_quad] if what == "quads" else np.empty(0)
@@ -110,11 +99,28 @@ def _poly_data(surface: Any) -> dict[str, Any]:
     cell_data = {name: partial(rows, surface.cell_data[name]) for name in surface.cell_data.keys()}
     return {
         "points": surface.points,
-        "quads": np.array(quads, int).reshape(-1, 4),
+        "quads": quads,
         "hexes": None,
         "other_faces": others,
         **fields.taken(surface.point_data, cell_data, surface.field_data),
     }
+
+
+def _faces(flat: Any) -> tuple[Any, list[tuple[int, list[int]]], Any]:
+    """The quads of a flat list of faces, each with its number of vertices before it; the other faces with their places; the sides of each."""
+    if len(flat) and len(flat) % 5 == 0 and (flat[::5] == 4).all():
+        return flat.reshape(-1, 5)[:, 1:], [], flat[::5]
+    quads: list[list[int]] = []
+    others: list[tuple[int, list[int]]] = []
+    sides: list[int] = []
+    at = 0
+    while at < len(flat):
+        n = int(flat[at])
+        vertices = flat[at + 1 : at + 1 + n].tolist()
+        quads.append(vertices) if n == 4 else others.append((len(sides), vertices))
+        sides.append(n)
+        at += 1 + n
+    return np.array(quads, int).reshape(-1, 4), others, sides
 
 
 def _three(points: Any) -> Any:
