@@ -9,6 +9,7 @@ use crate::files;
 use anyhow::bail;
 use hexfill::io::MeshData;
 use hexfill::mesh::HexMesh;
+use hexfill::unstable::check::{Judged, Level, Options, Rule, judge};
 use hexfill::{Context, FillReport, FilledRegions, Placed, Region, StopReason};
 use serde::Serialize;
 use std::time::Instant;
@@ -55,6 +56,10 @@ pub(super) fn run(
         notes.push(format!("{} hexes of the file itself have no certificate of det J > 0", whole.given_invalid));
         console.note(&notes[notes.len() - 1]);
     }
+    if let Some(note) = pinched_note(&whole) {
+        console.note(&note);
+        notes.push(note);
+    }
     let valid = args.no_embed || whole.is_certified();
     let files =
         if whole.is_complete() && (valid || !args.require_valid) { write(args, &whole, console)? } else { Vec::new() };
@@ -79,6 +84,21 @@ pub(super) fn run(
         say(&output, regions.len(), args, console);
     }
     Ok(exit)
+}
+
+/// A word on solids that touch in edges or vertices alone: each of them passes level 3, the whole does not.
+fn pinched_note(whole: &FilledRegions) -> Option<String> {
+    let judged = Judged::connectivity(whole.data.vertex_count(), &whole.data.hexes);
+    let options = Options::default().with_up_to(Level::L3).with_betti(false).with_quality(false);
+    let report = judge(&judged, &options, &Context::default());
+    let count = |rule: Rule| report.failures.iter().find(|f| f.rule == rule).map_or(0, |f| f.count);
+    let (edges, vertices) = (count(Rule::EdgePinched), count(Rule::VertexPinched));
+    (edges + vertices > 0).then(|| {
+        format!(
+            "solids touch in edges ({edges}) or vertices ({vertices}) alone, as the file has it: there the whole is no manifold; give each solid points \
+             of its own to part them"
+        )
+    })
 }
 
 fn say(output: &Output, n_regions: usize, args: &FillArgs, console: &Console) {
