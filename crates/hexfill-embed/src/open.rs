@@ -8,6 +8,7 @@ use crate::cell::frame::{BOTTOM_CORNERS, Frame, MIXED};
 use crate::improvement::{UntangleLimits, untangle};
 use crate::problem::Problem;
 use crate::quality::WORKING_BOXES;
+use crate::starts::{Weights, place_at_means};
 use hexfill_geometry::{Vector, det};
 use hexfill_mesh::Context;
 
@@ -33,6 +34,30 @@ pub struct OpenEffort {
     pub extra: usize,
 }
 
+/// Positions to begin with: the surface's as given, all other vertices and the apex at the means of their neighbours along edges, pyramids included
+/// (graph Laplacian). Cells may well be inverted. Returns all points, those of the surface first, and the apex.
+pub fn open_start(
+    hexes: &[[u32; 8]],
+    front: &[[u32; 4]],
+    n_vertices: usize,
+    surface: &[Vector],
+) -> (Vec<Vector>, Vector) {
+    let apex = n_vertices as u32;
+    let cells = hexes.iter().copied().chain(front.iter().map(|q| pyramid(q, apex))).collect();
+    let fixed: Vec<bool> = (0..=n_vertices).map(|v| v < surface.len()).collect();
+    let problem = Problem::new(n_vertices + 1, cells, &fixed);
+    let mut points = surface.to_vec();
+    points.resize(n_vertices + 1, [0.0; 3]);
+    place_at_means(&problem, &mut points, Weights::Unit, false, &Context::default());
+    let apex = points.pop().unwrap_or_default();
+    (points, apex)
+}
+
+/// A pyramid over a quad of the front, as a hex whose top is one point.
+fn pyramid(&[a, b, c, d]: &[u32; 4], apex: u32) -> [u32; 8] {
+    [a, d, c, b, apex, apex, apex, apex]
+}
+
 impl Open<'_> {
     /// Moves the vertices marked in `free` (one flag a point). Returns how many of the hexes and of the pyramids at free vertices are not valid.
     pub fn untangle(
@@ -46,7 +71,7 @@ impl Open<'_> {
         let mut cells: Vec<[u32; 8]> = self.hexes.iter().copied().filter(is_near).collect();
         let n = cells.len();
         let a = points.len() as u32;
-        cells.extend(self.front.iter().map(|q| [q[0], q[3], q[2], q[1], a, a, a, a]).filter(is_near));
+        cells.extend(self.front.iter().map(|q| pyramid(q, a)).filter(is_near));
         let fixed: Vec<bool> = free.iter().map(|f| !f).chain([true]).collect();
         points.push(self.apex);
         let mut problem = Problem::new(points.len(), cells, &fixed);
@@ -103,6 +128,18 @@ mod tests {
             assert_eq!(open.untangle(&free(), &mut points, EFFORT, &Context::default()), [0, 0], "{size}");
             assert_eq!((&points[..8], points.len()), (&before[..8], 16));
         }
+    }
+
+    #[test]
+    fn a_start_keeps_the_surface_and_has_the_rest_at_means() {
+        let (hexes, front, given) = pillowed(0.5);
+        let (points, apex) = open_start(&hexes, &front, 16, &given[..8]);
+        assert_eq!(points[..8], given[..8]);
+        // A vertex of the inner cube has one neighbour outside, three inside, and the apex: by symmetry x = (1 + x) / 5.
+        for (p, q) in points[8..].iter().zip(&given[..8]) {
+            assert!((0..3).all(|k| (p[k] - q[k] / 4.0).abs() < 1e-9), "{p:?}");
+        }
+        assert!(apex.iter().all(|x| x.abs() < 1e-9));
     }
 
     #[test]

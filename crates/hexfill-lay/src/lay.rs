@@ -1,9 +1,12 @@
 //! [`lay`]: the verb.
 
 use crate::fewer::without_sheets;
+use crate::frame::Frame;
 use crate::laid_mesh::LaidMesh;
 use crate::laying::{Laying, Underway};
-use hexfill_geometry::{Vector, norm, sub};
+use crate::open_mesh::{OpenMesh, swept};
+use crate::patch::Patch;
+use hexfill_geometry::Vector;
 use hexfill_mesh::{Context, HexMesh, QuadSurface};
 use rayon::prelude::*;
 
@@ -15,7 +18,7 @@ pub struct LayOptions {
     pub attempts: u64,
     /// Times that many are begun, until one of them ends.
     pub batches: u64,
-    /// Most hexes a quad while laying.
+    /// Most hexes for each quad of the void while laying.
     pub most: f64,
     /// Sheets whose loss is tried at most, for each mesh.
     pub sheets: u32,
@@ -23,86 +26,96 @@ pub struct LayOptions {
 
 impl Default for LayOptions {
     fn default() -> Self {
-        Self { attempts: 4, batches: 2, most: 12.0, sheets: 60 }
+        Self { attempts: 4, batches: 2, most: 14.0, sheets: 60 }
     }
 }
 
-/// For surfaces of more quads half as many meshes are begun at once, in more batches, and half as many sheets are tried.
-const LARGE: usize = 150;
+/// On surfaces of fewer quads more meshes are begun, about as many more as it is smaller.
+const SMALL: u64 = 150;
 /// Meshes from which sheets are taken.
 const KEPT: usize = 2;
 /// Plans for one mesh: a jam that pillows do not clear asks for another.
 const PLANS: u64 = 12;
 
-/// Lays meshes for a sphere of quads whose vertices are at `points` (outward orientation), fewest hexes first; none if no attempt came to its end.
-/// The same for any number of threads.
+/// Lays meshes for a surface whose vertices are at `points` (outward orientation), fewest hexes first; none if no sweep of it leaves one void that can be
+/// held open, or no attempt came to its end. The same for any number of threads.
 pub fn lay(surface: &QuadSurface, points: &[Vector], options: &LayOptions, ctx: &Context<'_>) -> Vec<LaidMesh> {
-    if !surface.is_sphere() {
-        return Vec::new();
-    }
     let frame = Frame::of(points);
     let within: Vec<Vector> = points.iter().map(|&p| frame.enter(p)).collect();
-    let Some(start) = Laying::begin(surface, &within, ctx) else { return Vec::new() };
-    let most = (options.most * surface.n_quads() as f64) as usize;
-    // Each hex is laid with all others looked at, so time grows with the square of the quads.
-    let share = if surface.n_quads() > LARGE { 2 } else { 1 };
-    let (attempts, sheets) = (options.attempts.div_ceil(share), options.sheets.div_ceil(share as u32));
-    for batch in 0..options.batches * share {
-        let mut made: Vec<LaidMesh> = (0..attempts)
+    let open = swept(surface, &within, ctx);
+    if open.is_empty() {
+        return Vec::new();
+    }
+    let attempts = options.attempts * (SMALL / surface.n_quads().max(1) as u64).max(1);
+    for batch in 0..options.batches {
+        let numbers = batch * attempts..(batch + 1) * attempts;
+        let mut filled: Vec<Filled<'_>> = numbers
             .into_par_iter()
-            .filter_map(|i| {
-                let quiet = if i == 0 { *ctx } else { Context { progress: None, ..*ctx } };
-                let laying = to_the_end(start.clone(), ctx.seed + batch * attempts + i, most, &quiet)?;
-                let mesh = HexMesh::try_new(laying.points.len(), &laying.hexes).ok()?;
-                Some(LaidMesh { mesh, points: laying.points, invalid: laying.forgiven.len(), pillows: laying.pillows })
+            .filter_map(|number| {
+                let open = &open[number as usize % open.len()];
+                // Of several at once one speaks.
+                let quiet = if number == batch * attempts { *ctx } else { Context { progress: None, ..*ctx } };
+                Filled::new(open, number, options.most, &quiet)
             })
             .collect();
-        if !made.is_empty() || ctx.stop().is_some() {
-            // Stable: among equals the first attempt.
-            made.sort_by_key(|laid| laid.mesh.n_hexes());
-            made.truncate(KEPT);
-            let mut fewer: Vec<LaidMesh> =
-                made.into_par_iter().map(|laid| without_sheets(laid, surface.n_vertices(), sheets, ctx)).collect();
-            fewer.sort_by_key(|laid| laid.mesh.n_hexes());
-            for laid in &mut fewer {
-                laid.points.iter_mut().for_each(|p| *p = frame.leave(*p));
-                laid.points[..points.len()].copy_from_slice(points);
-            }
-            return fewer;
+        if filled.is_empty() && ctx.stop().is_none() {
+            continue;
         }
+        // Stable: among equals the first attempt.
+        filled.sort_by_key(Filled::n_hexes);
+        filled.truncate(KEPT);
+        let mut laid: Vec<LaidMesh> =
+            filled.into_par_iter().filter_map(|filled| filled.whole(options.sheets, ctx)).collect();
+        laid.sort_by_key(|laid| laid.mesh.n_hexes());
+        for laid in &mut laid {
+            laid.points.iter_mut().for_each(|p| *p = frame.leave(*p));
+            laid.points[..points.len()].copy_from_slice(points);
+        }
+        return laid;
     }
     Vec::new()
 }
 
-/// Where the work is done: the mean of the surface's vertices at the origin, the farthest at distance 1.
-struct Frame {
-    centre: Vector,
-    size: f64,
+/// A void that is filled, with what lies round it.
+struct Filled<'a> {
+    open: &'a OpenMesh,
+    patch: Patch,
+    laid: LaidMesh,
 }
 
-impl Frame {
-    fn of(points: &[Vector]) -> Self {
-        let share = 1.0 / points.len().max(1) as f64;
-        let centre = std::array::from_fn(|axis| points.iter().map(|p| share * p[axis]).sum());
-        let size = points.iter().map(|&p| norm(sub(p, centre))).fold(0.0, f64::max).max(f64::MIN_POSITIVE);
-        Self { centre, size }
+impl<'a> Filled<'a> {
+    /// Fills the void by the plans of that number, with at most so many hexes for each of its quads.
+    fn new(open: &'a OpenMesh, number: u64, most: f64, ctx: &Context<'_>) -> Option<Self> {
+        let patch = Patch::round(open);
+        let most = patch.n_hexes() + (most * open.front.len() as f64) as usize;
+        let laying = to_the_end(patch.laying(open), ctx.seed + number, most, ctx)?;
+        let mesh = HexMesh::try_new(laying.points.len(), &laying.hexes).ok()?;
+        let invalid = laying.forgiven.len();
+        // The pillow under the surface is the first.
+        let laid = LaidMesh { mesh, points: laying.points, invalid, pillows: 1 + laying.pillows };
+        Some(Self { open, patch, laid })
     }
 
-    fn enter(&self, p: Vector) -> Vector {
-        sub(p, self.centre).map(|x| x / self.size)
+    fn n_hexes(&self) -> usize {
+        self.open.hexes.len() - self.patch.n_hexes() + self.laid.mesh.n_hexes()
     }
 
-    fn leave(&self, p: Vector) -> Vector {
-        std::array::from_fn(|axis| self.size.mul_add(p[axis], self.centre[axis]))
+    /// The whole mesh, without sheets it can do without near the void.
+    fn whole(self, sheets: u32, ctx: &Context<'_>) -> Option<LaidMesh> {
+        let LaidMesh { mesh, points, pillows, .. } = without_sheets(self.laid, self.patch.n_fixed(), sheets, ctx);
+        let (mesh, points) = self.patch.put_back(self.open, &mesh, &points)?;
+        Some(LaidMesh { mesh, points, invalid: self.open.forgiven.len(), pillows })
     }
 }
 
 /// Lays hexes until nothing is open. `None` if it jams, has more than `most` hexes, or is told to stop.
 fn to_the_end(mut laying: Laying, seed: u64, most: usize, ctx: &Context<'_>) -> Option<Laying> {
     let mut plans = 0;
+    // A plan knows nothing of what is outside: it needs a pillow between.
+    laying.pillow(&mut [], ctx);
     let mut underway = next_plan(&laying, seed, &mut plans, ctx)?;
     // Pillows since the last hex; a new plan begins right behind one.
-    let mut jams = 0;
+    let mut jams = 1;
     while !laying.front.is_empty() {
         if ctx.stop().is_some() || laying.hexes.len() > most {
             return None;
@@ -116,7 +129,7 @@ fn to_the_end(mut laying: Laying, seed: u64, most: usize, ctx: &Context<'_>) -> 
             continue;
         }
         if jams == 0 || jams == 1 && !underway.is_over() {
-            laying.pillow(&mut underway, ctx);
+            laying.pillow(&mut underway.ids, ctx);
             jams += 1;
         }
         if underway.is_over() || jams >= 2 {

@@ -1,13 +1,13 @@
 //! [`Laying`]: the hexes laid so far, their positions, and the front of what is open.
 
+use crate::open_mesh::without;
 use crate::plan::Plan;
 use crate::void_front::{NOT_YET, VoidFront, advanced};
-use hexfill_embed::{Open, OpenEffort, untangle_near};
+use hexfill_embed::{Open, OpenEffort};
 use hexfill_geometry::Vector;
 use hexfill_mesh::cube::CORNER_NEIGHBOURS;
-use hexfill_mesh::{Context, HexMesh, QuadSurface};
+use hexfill_mesh::{Context, QuadSurface};
 use rustc_hash::FxHashMap;
-use std::borrow::Cow;
 
 /// A new vertex begins at the mean of its neighbours, moved by this share towards the apex.
 const INWARD: f64 = 0.15;
@@ -15,8 +15,6 @@ const INWARD: f64 = 0.15;
 const HEIGHTS: [f64; 3] = [0.3, 0.15, 0.5];
 /// Rounds of rounding a pillow, each kept only if it stays valid.
 const ROUNDINGS: usize = 8;
-/// One hex of the first pillow in so many may be forgiven.
-const FEW: usize = 8;
 /// A hex goes first where it covers at least so many quads: then the front does not grow.
 const MANY: u32 = 3;
 /// Hexes that are tried with more of their surroundings free.
@@ -24,11 +22,9 @@ const TRIED_WIDER: usize = 6;
 /// After so many hexes all is rounded.
 const ROUNDED: usize = 4;
 
-/// How long the untangler tries: the first pillow, a hex with one ring of free vertices, with more, with all, rounding a pillow, rounding everything.
-const FIRST_PILLOW: OpenEffort = effort(100, 200, 2);
+/// How long the untangler tries: a hex with one ring of free vertices, with more, rounding a pillow, rounding everything.
 const ONE_RING: OpenEffort = effort(20, 60, 0);
 const MORE_RINGS: OpenEffort = effort(60, 60, 0);
-const ALL: OpenEffort = effort(60, 100, 1);
 const JUDGE: OpenEffort = effort(0, 0, 0);
 const ROUND_PILLOW: OpenEffort = effort(1, 15, 0);
 const ROUND_ALL: OpenEffort = effort(3, 60, 2);
@@ -45,9 +41,9 @@ pub(crate) struct Laying {
     /// Quads counter-clockwise seen from outside of the void.
     pub(crate) front: Vec<[u32; 4]>,
     pub(crate) pillows: u32,
-    /// Hexes of the first pillow, by number, for which the surface leaves no room: they wait for a second edge at its vertices, and nothing looks at them.
+    /// Hexes, ascending, that nothing looks at: the surface leaves no room for them.
     pub(crate) forgiven: Vec<u32>,
-    /// Vertices of the surface, which stay.
+    /// The first vertices, which stay.
     n_fixed: usize,
     /// Inside the void.
     apex: Vector,
@@ -60,7 +56,7 @@ pub(crate) struct Laying {
 pub(crate) struct Underway {
     plan: Plan,
     /// Per vertex of the plan: its id among those laid, or [`NOT_YET`].
-    ids: Vec<u32>,
+    pub(crate) ids: Vec<u32>,
     /// Hexes of the plan still to lay, in its order.
     rest: Vec<u32>,
 }
@@ -73,41 +69,16 @@ impl Underway {
 }
 
 impl Laying {
-    /// A surface with a pillow under it; `None` if more than a few hexes of that have no valid positions with the apex at the origin.
-    pub(crate) fn begin(surface: &QuadSurface, points: &[Vector], ctx: &Context<'_>) -> Option<Self> {
-        let (apex, front) = ([0.0; 3], surface.quads_raw());
-        let mut laying = Self {
-            hexes: Vec::new(),
-            points: points.to_vec(),
-            front,
-            pillows: 0,
-            forgiven: Vec::new(),
-            n_fixed: points.len(),
-            apex,
-            since: 0,
-        };
-        laying.put_pillow(HEIGHTS[0]);
-        let free = laying.all();
-        let [bad, pyramids] = laying.untangle(&free, FIRST_PILLOW, ctx);
-        if pyramids > 0 || bad * FEW > surface.n_quads() {
-            return None;
-        }
-        if bad > 0 {
-            laying.forgive();
-            if laying.untangle(&free, FIRST_PILLOW, ctx) != [0, 0] {
-                return None;
-            }
-        }
-        Some(laying)
-    }
-
-    /// Forgives the hexes that are not valid and that no small change makes valid.
-    fn forgive(&mut self) {
-        let Ok(mesh) = HexMesh::try_new(self.points.len(), &self.hexes) else { return };
-        if let Ok((points, bad)) = untangle_near(&mesh, &self.points, 0, 0, &Context::default()) {
-            self.points = points;
-            self.forgiven = bad.iter().map(|h| h.0).collect();
-        }
+    /// Hexes round a void; the first `n_fixed` vertices stay.
+    pub(crate) fn new(
+        hexes: Vec<[u32; 8]>,
+        points: Vec<Vector>,
+        front: Vec<[u32; 4]>,
+        apex: Vector,
+        forgiven: Vec<u32>,
+        n_fixed: usize,
+    ) -> Self {
+        Self { hexes, points, front, pillows: 0, forgiven, n_fixed, apex, since: 0 }
     }
 
     /// A plan for the void as it is; `None` if its front is no proper sphere, or no hex was found.
@@ -123,12 +94,7 @@ impl Laying {
     pub(crate) fn lay_one(&mut self, underway: &mut Underway, any: bool, ctx: &Context<'_>) -> bool {
         let candidates = self.candidates(underway, any);
         let wider = || candidates.iter().take(TRIED_WIDER);
-        let tries = candidates
-            .iter()
-            .map(|c| (c, Some(1)))
-            .chain(wider().map(|c| (c, Some(2))))
-            .chain(wider().map(|c| (c, Some(3))))
-            .chain(wider().map(|c| (c, None)));
+        let tries = candidates.iter().map(|c| (c, 1)).chain(wider().map(|c| (c, 2))).chain(wider().map(|c| (c, 3)));
         for (&(hex, covered), rings) in tries {
             if ctx.stop().is_some() {
                 return false;
@@ -183,20 +149,16 @@ impl Laying {
         self.hexes.push(laid);
     }
 
-    /// Untangles round the last hex, with so many rings free, or all. Whether that made everything valid.
-    fn finds_room(&mut self, rings: Option<usize>, ctx: &Context<'_>) -> bool {
-        let free = rings.map_or_else(|| self.all(), |rings| self.near_last(rings));
-        let effort = match rings {
-            Some(1) => ONE_RING,
-            Some(_) => MORE_RINGS,
-            None => ALL,
-        };
+    /// Untangles round the last hex, with so many rings free. Whether that made everything valid.
+    fn finds_room(&mut self, rings: usize, ctx: &Context<'_>) -> bool {
+        let free = self.near_last(rings);
+        let effort = if rings == 1 { ONE_RING } else { MORE_RINGS };
         self.untangle(&free, effort, ctx) == [0, 0]
     }
 
     /// Puts a pillow behind the front and follows it with the plan. It is valid, as the pyramids are, unless a cell with positive corners is
     /// not: then the pillow with fewest such cells is taken, and later hexes mend it.
-    pub(crate) fn pillow(&mut self, underway: &mut Underway, ctx: &Context<'_>) {
+    pub(crate) fn pillow(&mut self, ids: &mut [u32], ctx: &Context<'_>) {
         let mut best: Option<([usize; 2], Self, FxHashMap<u32, u32>)> = None;
         for height in HEIGHTS {
             let mut trial = self.clone();
@@ -220,7 +182,7 @@ impl Laying {
                 break;
             }
         }
-        for id in &mut underway.ids {
+        for id in ids {
             *id = copies.get(id).copied().unwrap_or(*id);
         }
     }
@@ -260,11 +222,7 @@ impl Laying {
     /// Moves the free vertices. Returns the hexes and the pyramids at them that are not valid.
     fn untangle(&mut self, free: &[bool], effort: OpenEffort, ctx: &Context<'_>) -> [usize; 2] {
         let quiet = Context { progress: None, ..*ctx };
-        let looked_at: Cow<'_, [[u32; 8]]> = if self.forgiven.is_empty() {
-            Cow::Borrowed(&self.hexes)
-        } else {
-            (0..).zip(&self.hexes).filter(|(h, _)| !self.forgiven.contains(h)).map(|(_, hex)| *hex).collect()
-        };
+        let looked_at = without(&self.hexes, &self.forgiven);
         Open { hexes: &looked_at, front: &self.front, apex: self.apex }.untangle(free, &mut self.points, effort, &quiet)
     }
 

@@ -43,7 +43,7 @@ const STARTS: u32 = 2;
 const MOST_CONSTRUCTED: usize = 1000;
 
 /// Hexes are laid one by one in surfaces of at most so many quads.
-pub(crate) const MOST_LAID: usize = 300;
+pub(crate) const MOST_LAID: usize = 2500;
 
 /// Pillows are put into meshes of surfaces of at most so many quads.
 const MOST_PILLOWED: usize = 160;
@@ -222,7 +222,7 @@ impl<'a> Trial<'a> {
     /// Lays hexes one by one if no mesh has valid positions yet, on spheres that an apex may hold open.
     fn lay(&mut self) -> Result<(), FillError> {
         let surface = &self.problem.surface;
-        let is_worth = matches!(self.class(), None | Some(2)) && surface.is_sphere() && surface.n_quads() <= MOST_LAID;
+        let is_worth = matches!(self.class(), None | Some(2)) && surface.n_quads() <= MOST_LAID;
         if !is_worth || self.options.layers.is_some() || self.ctx.stop().is_some() {
             return Ok(());
         }

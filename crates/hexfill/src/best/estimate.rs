@@ -58,7 +58,7 @@ pub fn estimate(problem: &Problem, options: &FillOptions, how: &PlaceOptions) ->
         _ => [n / 4, (4 * n).max((2.0 * (quads / 6.0).powf(1.5)) as u64)],
     };
     let small = surface.is_sphere() && surface.n_quads() <= hexfill_search::MAX_QUADS;
-    let is_laid = surface.is_sphere() && surface.n_quads() <= MOST_LAID;
+    let is_laid = surface.n_quads() <= MOST_LAID;
     let engines = match options.strategy {
         Strategy::Construct => vec!["construction"],
         Strategy::Shell if is_laid => vec!["shelling", "laying"],

@@ -1,0 +1,105 @@
+//! [`OpenMesh`]: the surface with the hexes that a sweep could glue, all at valid positions, and the void they leave.
+
+use hexfill_embed::{Open, OpenEffort, open_start, untangle_near};
+use hexfill_geometry::Vector;
+use hexfill_mesh::{Context, HexMesh, QuadSurface};
+use hexfill_shell::{SweepOptions, Swept, sweep};
+use rayon::prelude::*;
+use rustc_hash::FxHashSet;
+use std::borrow::Cow;
+
+/// Sweeps that differ by how ties are broken; the best of them are gone on from. As many as these quads allow, within limits.
+const QUADS_SWEPT: usize = 10_000;
+const SWEEPS: [usize; 2] = [8, 32];
+/// Voids of more quads are not tried.
+const MOST_OPEN: usize = 300;
+/// One hex of the pillow in so many may be forgiven.
+const FEW: usize = 8;
+/// A quad of the void may take so many hexes in the end.
+const HEXES_A_QUAD: usize = 5;
+/// How long the untangler tries.
+const EFFORT: OpenEffort = OpenEffort { rounds: 100, iterations: 200, extra: 2 };
+
+/// Hexes from a surface inward, their positions, and what is open.
+#[derive(Clone, Debug)]
+pub(crate) struct OpenMesh {
+    /// The surface's vertices come first.
+    pub(crate) hexes: Vec<[u32; 8]>,
+    pub(crate) points: Vec<Vector>,
+    /// Quads counter-clockwise seen from outside of the void.
+    pub(crate) front: Vec<[u32; 4]>,
+    /// Inside the void, which it sees all of.
+    pub(crate) apex: Vector,
+    /// Hexes, ascending, for which the surface leaves no room: they wait for a second edge at its vertices, and nothing looks at them.
+    pub(crate) forgiven: Vec<u32>,
+    pub(crate) n_surface: usize,
+}
+
+/// The best that sweeps with other ties leave, fewest forgiven hexes first, then fewest hexes as far as one can tell; none if no void can be held open.
+pub(crate) fn swept(surface: &QuadSurface, points: &[Vector], ctx: &Context<'_>) -> Vec<OpenMesh> {
+    let quiet = Context { progress: None, ..*ctx };
+    let sweeps = (QUADS_SWEPT / surface.n_quads().max(1)).clamp(SWEEPS[0], SWEEPS[1]) as u64;
+    let mut left: Vec<Swept> =
+        (0..sweeps).into_par_iter().filter_map(|i| left_open(surface, points, ctx.seed + i, &quiet)).collect();
+    // Many sweeps end alike.
+    let mut seen = FxHashSet::default();
+    left.retain(|swept| seen.insert(swept.hexes.clone()));
+    let mut open: Vec<OpenMesh> =
+        left.into_par_iter().filter_map(|swept| OpenMesh::placed(swept, points, &quiet)).collect();
+    // Stable: among equals the first.
+    open.sort_by_key(|open| (open.forgiven.len(), open.hexes.len() + HEXES_A_QUAD * open.front.len()));
+    open
+}
+
+/// What a sweep behind a pillow leaves, if that is one void of not too many quads.
+fn left_open(surface: &QuadSurface, points: &[Vector], seed: u64, ctx: &Context<'_>) -> Option<Swept> {
+    let options = SweepOptions { pillows: 1, seed, ..SweepOptions::default() };
+    let swept = sweep(surface, Some(points), &options, ctx);
+    let is_small = (1..=MOST_OPEN).contains(&swept.front.len()) && ctx.stop().is_none();
+    let (void, _) = QuadSurface::on_own_vertices(swept.front.clone()).ok().filter(|_| is_small)?;
+    void.is_sphere().then_some(swept)
+}
+
+impl OpenMesh {
+    /// Positions for what a sweep made; `None` if not all of it is valid but for a few hexes at the surface.
+    fn placed(swept: Swept, surface: &[Vector], ctx: &Context<'_>) -> Option<Self> {
+        let Swept { hexes, front, n_vertices, .. } = swept;
+        let (points, apex) = open_start(&hexes, &front, n_vertices as usize, surface);
+        let mut open = Self { hexes, points, front, apex, forgiven: Vec::new(), n_surface: surface.len() };
+        let [bad, pyramids] = open.untangle(ctx);
+        if pyramids > 0 || bad * FEW > surface.len() {
+            return None;
+        }
+        if bad > 0 {
+            open.forgive();
+            if open.untangle(ctx) != [0, 0] {
+                return None;
+            }
+        }
+        Some(open)
+    }
+
+    /// Forgives the hexes that are not valid and that no small change makes valid.
+    fn forgive(&mut self) {
+        let Ok(mesh) = HexMesh::try_new(self.points.len(), &self.hexes) else { return };
+        if let Ok((points, bad)) = untangle_near(&mesh, &self.points, 0, 0, &Context::default()) {
+            self.points = points;
+            self.forgiven = bad.iter().map(|h| h.0).collect();
+        }
+    }
+
+    /// Moves all vertices but those of the surface. Returns the hexes and the pyramids that are not valid.
+    fn untangle(&mut self, ctx: &Context<'_>) -> [usize; 2] {
+        let free: Vec<bool> = (0..self.points.len()).map(|v| v >= self.n_surface).collect();
+        let looked_at = without(&self.hexes, &self.forgiven);
+        Open { hexes: &looked_at, front: &self.front, apex: self.apex }.untangle(&free, &mut self.points, EFFORT, ctx)
+    }
+}
+
+/// Hexes but for those with some numbers, which ascend.
+pub(crate) fn without<'a>(hexes: &'a [[u32; 8]], numbers: &[u32]) -> Cow<'a, [[u32; 8]]> {
+    if numbers.is_empty() {
+        return Cow::Borrowed(hexes);
+    }
+    (0..).zip(hexes).filter(|(h, _)| numbers.binary_search(h).is_err()).map(|(_, hex)| *hex).collect()
+}
