@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from . import fields
 from .errors import InputError
 
 if TYPE_CHECKING:
@@ -24,7 +26,8 @@ IGNORED = {1, 2, 3, 4, 21, "vertex", "line", "line3"}
 
 
 def arrays_of(given: Any) -> dict[str, Any] | None:
-    """``points``, ``quads``, ``hexes`` and ``other_faces`` of a PyVista or meshio mesh; ``None`` if it is neither."""
+    """``points``, ``quads``, ``hexes``, ``other_faces`` of a PyVista or meshio mesh, and what it carries as :func:`fields.taken` has it; ``None``
+    if it is neither."""
     if not hasattr(given, "points"):
         return None
     if hasattr(given, "cells_dict"):
@@ -60,21 +63,64 @@ def _grid(grid: Any) -> dict[str, Any]:
         "quads": np.concatenate(quads) if quads else np.empty((0, 4), int),
         "hexes": np.concatenate(hexes) if hexes else np.empty((0, 8), int),
         "other_faces": [(n_quads + i, face) for i, face in enumerate(others)],
+        **_carried(grid),
     }
 
 
+#: The kinds of cells that carry numbers, in both words.
+KINDS: dict[str, tuple[Any, ...]] = {"quads": (*QUAD, PIXEL), "hexes": (*HEX, VOXEL)}
+
+
+def _carried(grid: Any) -> dict[str, Any]:
+    """Data, tags and names of tags; arrays on cells in the order in which ``cells_dict`` joins these."""
+    kinds = list(grid.cells_dict)
+    places = {what: [kind for kind in kinds if kind in of] for what, of in KINDS.items()}
+
+    def rows(array: Any, what: str) -> Any:
+        if hasattr(grid, "celltypes"):
+            parts = [np.asarray(array)[grid.celltypes == kind] for kind in places[what]]
+        else:
+            parts = [np.asarray(a) for kind in places[what] for a, b in zip(array, grid.cells) if b.type == kind]
+        return np.concatenate(parts) if parts else np.empty(0)
+
+    cell_data = {name: partial(rows, grid.cell_data[name]) for name in grid.cell_data.keys()}
+    return fields.taken(grid.point_data, cell_data, grid.field_data)
+
+
 def _poly_data(surface: Any) -> dict[str, Any]:
-    """A PyVista PolyData: a flat list of faces, each with its number of vertices before it."""
-    flat = np.asarray(surface.faces)
-    quads, others, at, face = [], [], 0, 0
+    """A PyVista PolyData."""
+    quads, others, sides = _faces(np.asarray(surface.faces))
+    # Vertices and lines come before the faces.
+    is_quad = np.concatenate([np.zeros(surface.n_verts + surface.n_lines, bool), np.asarray(sides, int) == 4])
+
+    def rows(array: Any, what: str) -> Any:
+        return np.asarray(array)[: len(is_quad)][is_quad] if what == "quads" else np.empty(0)
+
+    cell_data = {name: partial(rows, surface.cell_data[name]) for name in surface.cell_data.keys()}
+    return {
+        "points": surface.points,
+        "quads": quads,
+        "hexes": None,
+        "other_faces": others,
+        **fields.taken(surface.point_data, cell_data, surface.field_data),
+    }
+
+
+def _faces(flat: Any) -> tuple[Any, list[tuple[int, list[int]]], Any]:
+    """The quads of a flat list of faces, each with its number of vertices before it; the other faces with their places; the sides of each."""
     if len(flat) and len(flat) % 5 == 0 and (flat[::5] == 4).all():
-        return {"points": surface.points, "quads": flat.reshape(-1, 5)[:, 1:], "hexes": None, "other_faces": []}
+        return flat.reshape(-1, 5)[:, 1:], [], flat[::5]
+    quads: list[list[int]] = []
+    others: list[tuple[int, list[int]]] = []
+    sides: list[int] = []
+    at = 0
     while at < len(flat):
         n = int(flat[at])
         vertices = flat[at + 1 : at + 1 + n].tolist()
-        quads.append(vertices) if n == 4 else others.append((face, vertices))
-        at, face = at + 1 + n, face + 1
-    return {"points": surface.points, "quads": np.array(quads, int).reshape(-1, 4), "hexes": None, "other_faces": others}
+        quads.append(vertices) if n == 4 else others.append((len(sides), vertices))
+        sides.append(n)
+        at += 1 + n
+    return np.array(quads, int).reshape(-1, 4), others, sides
 
 
 def _three(points: Any) -> Any:
@@ -92,26 +138,30 @@ def _positions(mesh: Surface | HexMesh) -> Any:
 
 
 def surface_to_pyvista(surface: Surface) -> pyvista.PolyData:
-    """A surface with its tags."""
+    """A surface with its tags and data."""
     import pyvista
 
     poly = pyvista.PolyData.from_regular_faces(_positions(surface), np.array(surface.quads))  # type: ignore[arg-type]
-    if surface.quad_tags is not None:
-        poly.cell_data["tag"] = surface.quad_tags
+    _carry(poly, surface, surface.quad_data, surface.quad_tags, ["points", "quads"])
     return poly
 
 
+def _carry(grid: Any, mesh: Surface | HexMesh, data: Any, tags: Any, kinds: list[str]) -> None:
+    """Gives a PyVista mesh numbers of its cells and points, their tags, and the names of these."""
+    grid.cell_data.update(fields.joined(data))
+    if tags is not None:
+        grid.cell_data["tag"] = tags
+    grid.point_data.update(fields.point_data(mesh))
+    for name, pairs in fields.names(mesh, kinds).items():
+        grid.field_data[name] = pairs.reshape(-1, 2)
+
+
 def mesh_to_pyvista(mesh: HexMesh) -> pyvista.UnstructuredGrid:
-    """A mesh with its tags and the data of its hexes."""
+    """A mesh with its tags and the data of its hexes and points."""
     import pyvista
 
     grid = pyvista.UnstructuredGrid({HEX[0]: np.array(mesh.hexes)}, _positions(mesh))
-    for name, numbers in mesh.hex_data.items():
-        grid.cell_data[name] = numbers
-    if mesh.hex_tags is not None:
-        grid.cell_data["tag"] = mesh.hex_tags
-    if mesh.point_tags is not None:
-        grid.point_data["tag"] = mesh.point_tags
+    _carry(grid, mesh, mesh.hex_data, mesh.hex_tags, ["points", "hexes"])
     if "scaled_jacobian" in mesh.hex_data:
         # What plot() colours by.
         grid.set_active_scalars("scaled_jacobian", preference="cell")
@@ -119,29 +169,38 @@ def mesh_to_pyvista(mesh: HexMesh) -> pyvista.UnstructuredGrid:
 
 
 def surface_to_meshio(surface: Surface) -> meshio.Mesh:
-    """A block of quads with their tags."""
+    """A block of quads with their tags and data."""
     import meshio
 
-    cell_data = {} if surface.quad_tags is None else {"tag": [np.array(surface.quad_tags)]}
-    quads = [("quad", np.array(surface.quads))]
-    return meshio.Mesh(_positions(surface), quads, point_data=_point_data(surface), cell_data=cell_data)
+    cell_data = {name: [numbers] for name, numbers in fields.joined(surface.quad_data).items()}
+    if surface.quad_tags is not None:
+        cell_data["tag"] = [np.array(surface.quad_tags)]
+    return meshio.Mesh(
+        _positions(surface),
+        [("quad", np.array(surface.quads))],
+        point_data=fields.point_data(surface),
+        cell_data=cell_data,
+        field_data=fields.names(surface, ["points", "quads"]),
+    )
 
 
 def mesh_to_meshio(mesh: HexMesh) -> meshio.Mesh:
-    """A block of hexahedra with their data, and the block of the surface's quads. Every array is on both: quads have no quality (NaN)."""
+    """A block of hexahedra with their data, and the block of the surface's quads with theirs. Every array is on both: quads have no quality (NaN)."""
     import meshio
 
     n_quads, n_hexes = len(mesh.quads), len(mesh.hexes)
-    cell_data = {name: [np.array(numbers), np.full(n_quads, np.nan)] for name, numbers in mesh.hex_data.items()}
+    cell_data = fields.on_both(mesh)
     if mesh.quad_tags is not None or mesh.hex_tags is not None:
         cell_data["tag"] = [_tags(mesh.hex_tags, n_hexes), _tags(mesh.quad_tags, n_quads)]
     blocks = [("hexahedron", np.array(mesh.hexes)), ("quad", np.array(mesh.quads))]
-    return meshio.Mesh(_positions(mesh), blocks, point_data=_point_data(mesh), cell_data=cell_data)
+    return meshio.Mesh(
+        _positions(mesh),
+        blocks,
+        point_data=fields.point_data(mesh),
+        cell_data=cell_data,
+        field_data=fields.names(mesh, ["points", "quads", "hexes"]),
+    )
 
 
 def _tags(tags: Any, n: int) -> Any:
     return np.zeros(n, np.int64) if tags is None else np.array(tags)
-
-
-def _point_data(mesh: Surface | HexMesh) -> dict[str, Any]:
-    return {} if mesh.point_tags is None else {"tag": np.array(mesh.point_tags)}

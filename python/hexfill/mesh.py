@@ -102,11 +102,11 @@ class _Arrays:
         """What it is: see :func:`hexfill.info`."""
         return json.loads(_native.info(self._data, self.name, running.run()))
 
-    def write(self, path: str | PathLike[str], *, format: str | None = None) -> None:
+    def write(self, path: str | PathLike[str], *, format: str | None = None, quadratic: bool = False) -> None:
         """Writes a file: see :func:`hexfill.write`."""
         from .verbs import written
 
-        written(path, self, format, stacklevel=3)  # type: ignore[arg-type]
+        written(path, self, format, quadratic, stacklevel=3)  # type: ignore[arg-type]
 
     def _given(self) -> _given.Given:
         return {
@@ -171,11 +171,11 @@ class Surface(_Arrays):
         super().__init__(data, name)
 
     def to_pyvista(self) -> pyvista.PolyData:
-        """As a PyVista mesh with its tags."""
+        """As a PyVista mesh with its tags, data, and names of tags as field data."""
         return foreign.surface_to_pyvista(self)
 
     def to_meshio(self) -> meshio.Mesh:
-        """As a meshio mesh with its tags."""
+        """As a meshio mesh with its tags, data, and names of tags as field data."""
         return foreign.surface_to_meshio(self)
 
     def __repr__(self) -> str:
@@ -312,11 +312,12 @@ class HexMesh(_Arrays):
         return simplify(self, **options)
 
     def to_pyvista(self) -> pyvista.UnstructuredGrid:
-        """As a PyVista mesh with the data of its hexes; ``plot()`` colours by the scaled Jacobian."""
+        """As a PyVista mesh with the data and tags of its hexes and points; ``plot()`` colours by the scaled Jacobian. What quads carry is on
+        ``surface.to_pyvista()``."""
         return foreign.mesh_to_pyvista(self)
 
     def to_meshio(self) -> meshio.Mesh:
-        """As a meshio mesh: the hexahedra with their data, then the quads of the surface."""
+        """As a meshio mesh: the hexahedra, then the quads of the surface, with data, tags, and names of tags as field data."""
         return foreign.mesh_to_meshio(self)
 
     def to_html(self, title: str | None = None) -> str:
@@ -430,7 +431,8 @@ def loaded(given: Any, cells: ArrayLike | None, kind: arrays.Kind | None) -> Sur
         return made(_native.load(name, None, running.run()), name)
     found = foreign.arrays_of(given)
     if found is not None:
-        data = _data(found["points"], found["quads"], found["hexes"], other_faces=found["other_faces"])
+        parts = [found.pop(part) for part in ("points", "quads", "hexes")]
+        data = _data(*parts, **found)
         return made(data, f"the {type(given).__name__}")
     if isinstance(given, (np.ndarray, list, tuple)) or given is None:
         raise TypeError("points alone are no mesh; give the cells, too: (points, quads) or (points, hexes)")

@@ -516,17 +516,24 @@ def read(
     return _prepared(made(_native.load(name, format, run()), name), weld, linearise)
 
 
-def write(path: str | PathLike[str], mesh: SurfaceLike, *, format: str | None = None) -> None:
+def write(
+    path: str | PathLike[str], mesh: SurfaceLike, *, format: str | None = None, quadratic: bool = False
+) -> None:
     """Writes a surface or a mesh, whole or not at all; the extension, or ``format``, decides how. Numbers read back bit for bit.
+
+    ``quadratic``: as cells of second order on straight edges, 20-node hexes and 8-node quads (VTK, VTU, Gmsh, Abaqus, Nastran, universal);
+    the nodes of edges come after all points.
 
     What the format does not carry (tags, data) is named in a warning; what it cannot hold (hexes in OBJ) is a :class:`FileError`.
     """
-    written(path, loaded(mesh, None, None), format, stacklevel=3)
+    written(path, loaded(mesh, None, None), format, quadratic, stacklevel=3)
 
 
-def written(path: str | PathLike[str], mesh: Surface | HexMesh, format: str | None, stacklevel: int) -> None:
+def written(
+    path: str | PathLike[str], mesh: Surface | HexMesh, format: str | None, quadratic: bool, stacklevel: int
+) -> None:
     """:func:`write`; the warnings belong to the caller so many levels up."""
-    for loss in _native.write(mesh._data, _text(path), format, run()):
+    for loss in _native.write(mesh._data, _text(path), format, bool(quadratic), run()):
         warnings.warn(loss, stacklevel=stacklevel)
 
 

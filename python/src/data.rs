@@ -255,12 +255,16 @@ pub(crate) fn write(
     data: &Data,
     path: String,
     format: Option<String>,
+    quadratic: bool,
     how: Run,
 ) -> PyResult<Vec<String>> {
-    let data = Arc::clone(&data.0);
+    let mut data = Arc::clone(&data.0);
     let (losses, _) = run(py, how, move |_| {
         let path = Path::new(&path);
         let format = format.map_or_else(|| Format::from_path(path), |name| Format::from_name(&name))?;
+        if quadratic {
+            data = Arc::new(Arc::unwrap_or_clone(data).into_quadratic()?);
+        }
         hexfill::io::write_path(path, Some(format), &data)?;
         Ok(data.losses(format))
     })?;

@@ -1,7 +1,7 @@
 //! Errors of the libraries as exceptions of `hexfill.errors`, with the ids they are about.
 
 use crate::words::in_python;
-use hexfill::io::{FormatError, Place, Position, ReadError, WriteError};
+use hexfill::io::{FormatError, Place, Position, QuadraticError, ReadError, WriteError};
 use hexfill::mesh::{HexMeshError, ImproperPair, Offenders, QuadId, SignatureError, SurfaceError, VertexId};
 use hexfill::unstable::enumerate::EnumerateError;
 use hexfill::{EmbedError, Existence, FillError, ProblemError, RegionsError, SimplifyError, ThreadsError};
@@ -257,6 +257,12 @@ impl From<WriteError> for Failure {
             WriteError::Io { file, source } => Self::io(file, source),
             _ => Self::new("FileError", error),
         }
+    }
+}
+
+impl From<QuadraticError> for Failure {
+    fn from(error: QuadraticError) -> Self {
+        Self::new("FileError", error)
     }
 }
 

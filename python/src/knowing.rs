@@ -5,13 +5,15 @@ use crate::failure::Failure;
 use crate::words::in_python;
 use crate::work::{Run, run};
 use hexfill::io::MeshData;
+use hexfill::io::TagOn;
 use hexfill::mesh::{greedy_shelling, surface_signature};
 use hexfill::unstable::check::{Judged, cell_quality};
 use hexfill::unstable::search::{Atlas, Cavity, MAX_QUADS};
-use hexfill::unstable::view::ViewInput;
-use hexfill::{CureOptions, Problem, catalog as named, describe_mesh, describe_surface};
+use hexfill::unstable::view::{Groups, ViewInput};
+use hexfill::{CureOptions, FillOptions, PlaceOptions, Problem, catalog as named, describe_mesh, describe_surface};
 use pyo3::prelude::*;
 use serde_json::{Value, json};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Describes a surface or a mesh; JSON.
@@ -24,7 +26,12 @@ pub(crate) fn info(py: Python<'_>, data: &Data, name: String, how: Run) -> PyRes
     let (text, _) = run(py, how, move |_| {
         let info = if data.hexes.is_empty() {
             let problem = Problem::from_data(&name, &data)?;
-            json!(describe_surface(problem.surface(), problem.points()))
+            let described = describe_surface(problem.surface(), problem.points());
+            let estimate = hexfill::estimate(&problem, &FillOptions::default(), &PlaceOptions::default())
+                .filter(|_| described.existence.hex_mesh != "none");
+            let mut info = json!(described);
+            info["estimate"] = json!(estimate);
+            info
         } else {
             json!(describe_mesh(&data)?)
         };
@@ -148,12 +155,18 @@ fn drawn<T>(
         |c: &Option<hexfill::unstable::check::CellQuality>| c.as_ref().map_or(f64::NAN, |c| c.certified_lower);
     let values: Vec<f64> = cell_quality(&judged).iter().map(of_cell).collect();
     let shelling = if is_page && mesh.n_hexes() <= SHELLING_LIMIT { greedy_shelling(&mesh) } else { None };
+    let names: BTreeMap<i64, String> =
+        data.tag_names.iter().filter(|n| n.on == TagOn::Faces).map(|n| (n.tag, n.name.clone())).collect();
+    let tags = data.quad_tags.as_deref().unwrap_or(&[]);
+    let name = |tag: i64| names.get(&tag).cloned().unwrap_or_else(|| tag.to_string());
+    let groups = Groups::new(&mesh, &data.quads, tags, name, false);
     Ok(draw(&ViewInput {
         title,
         points: &data.points,
         mesh: &mesh,
         hex_values: Some(("scaled Jacobian", &values)),
         shelling: shelling.as_deref(),
+        groups: groups.as_ref(),
         facts,
     }))
 }

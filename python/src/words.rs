@@ -1,7 +1,7 @@
 //! Texts of the libraries name flags and commands of the command line; from Python they name arguments and functions.
 
 /// What stands in texts, and what Python calls it. Single quotes, since texts also lie in JSON. Longer ones come first.
-const WORDS: [(&str, &str); 13] = [
+const WORDS: [(&str, &str); 14] = [
     ("--strategy auto or construct", "strategy='auto' or strategy='construct'"),
     ("--best goes on", "effort='best' goes on"),
     ("--weld TOL", "weld=TOL"),
@@ -9,6 +9,7 @@ const WORDS: [(&str, &str); 13] = [
     ("--weld ", "weld="),
     ("(--weld)", "(weld=...)"),
     ("--linearise", "linearise=True"),
+    ("--quadratic", "quadratic=True"),
     ("--layers", "layers"),
     ("--refine", "hexfill.mend(..., refine=True)"),
     ("--fix", "hexfill.mend"),

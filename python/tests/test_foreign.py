@@ -59,3 +59,101 @@ def test_meshio(bar, tmp_path):
         hexfill.fill(meshio.Mesh(points, [("tetra", [[0, 1, 2, 3]])]))
     with pytest.raises(hexfill.InputError, match="coordinates"):
         hexfill.HexMesh(None, mesh.hexes).to_meshio()
+
+
+def test_pyvista_carries_data_tags_and_names(bar):
+    pyvista = pytest.importorskip("pyvista")
+    points, quads = bar
+    n, m = len(points), len(quads)
+    poly = pyvista.PolyData.from_regular_faces(points, quads)
+    # Cells of another kind come first in VTK, with rows of their own.
+    poly.verts = [1, 0, 1, 5]
+    poly.cell_data["heat"] = np.arange(m + 2) - 2.0
+    poly.cell_data["flux"] = np.arange(3.0 * (m + 2)).reshape(-1, 3) - 6
+    poly.cell_data["tag"] = np.array([9, 9, *(np.arange(m) % 3)])
+    poly.point_data["height"] = points[:, 2]
+    poly.field_data["inlet"] = [[1, 2]]
+    poly.field_data["wall"] = [[1, 2], [2, 2]]
+    poly.field_data["time"] = [1.5]
+    mesh = hexfill.fill(poly)
+    assert (mesh.quad_data["heat"] == np.arange(m)).all() and (mesh.quad_tags == np.arange(m) % 3).all()
+    assert (mesh.quad_data["flux:2"] == 3 * np.arange(m) + 2).all()
+    assert (mesh.point_data["height"][:n] == points[:, 2]).all()
+    assert mesh.tag_names == [("quads", 1, "inlet"), ("quads", 1, "wall"), ("quads", 2, "wall"), ("hexes", 1, "volume")]
+    back = mesh.surface.to_pyvista()
+    assert (back.cell_data["flux"] == np.arange(3.0 * m).reshape(-1, 3)).all()
+    assert (back.field_data["wall"] == [[1, 2], [2, 2]]).all() and (back.point_data["height"][:n] == points[:, 2]).all()
+    grid = mesh.to_pyvista()
+    assert (grid.cell_data["layer"] == mesh.hex_data["layer"]).all() and (grid.field_data["volume"] == [[1, 3]]).all()
+    # Quads and hexes in one grid, mixed.
+    mixed = pyvista.UnstructuredGrid(
+        np.concatenate([np.column_stack([np.full(12, 8), mesh.hexes]).ravel(), np.column_stack([np.full(m, 4), quads]).ravel()]),
+        [12] * 12 + [9] * m,
+        mesh.points,
+    )
+    mixed.cell_data["material"] = np.array([7] * 12 + [0] * m)
+    mixed.cell_data["load"] = np.array([np.nan] * 12 + list(range(m)))
+    mixed.cell_data["certified_positive"] = np.ones(12 + m)
+    again = hexfill.embed(mixed)
+    assert (again.hex_tags == 7).all() and again.quad_tags is None
+    assert (again.quad_data["load"] == np.arange(m)).all() and "load" not in again.hex_data
+
+
+def test_what_was_judged_is_not_believed_of_others(bar):
+    pyvista = pytest.importorskip("pyvista")
+    grid = hexfill.fill(bar[0], bar[1]).to_pyvista()
+    assert (grid.cell_data["certified_positive"] == 1).all()
+    grid.points[:, 2] *= -1
+    assert not hexfill.check(grid).certified
+    from hexfill.mesh import as_mesh
+
+    assert as_mesh(grid).certified is None and "layer" in as_mesh(grid).hex_data
+    with pytest.warns(UserWarning, match="no real numbers"):
+        grid.cell_data["words"] = ["a"] * grid.n_cells
+        hexfill.check(grid)
+
+
+def test_meshio_carries_data_tags_and_names(bar, tmp_path):
+    meshio = pytest.importorskip("meshio")
+    points, quads = bar
+    m = len(quads)
+    given = meshio.Mesh(
+        points,
+        [("quad", quads[:10]), ("line", [[0, 1]]), ("quad", quads[10:])],
+        point_data={"shift": points * 2},
+        cell_data={
+            "gmsh:physical": [np.full(10, 4), np.array([9]), np.full(m - 10, 5)],
+            "heat": [np.arange(10.0), np.array([99.0]), np.arange(10.0, m)],
+        },
+        field_data={"inlet": np.array([4, 2]), "edge": np.array([9, 1]), "wall": np.array([5, 2])},
+    )
+    mesh = hexfill.fill(given)
+    assert (mesh.quad_data["heat"] == np.arange(m)).all() and (mesh.quad_tags == [4] * 10 + [5] * (m - 10)).all()
+    assert mesh.tag_names[:2] == [("quads", 4, "inlet"), ("quads", 5, "wall")]
+    assert (mesh.point_data["shift:1"][: len(points)] == 2 * points[:, 1]).all()
+    out = mesh.to_meshio()
+    assert (out.cell_data["heat"][1] == np.arange(m)).all() and np.isnan(out.cell_data["heat"][0]).all()
+    assert out.point_data["shift"].shape == (len(mesh.points), 3) and (out.field_data["inlet"] == [4, 2]).all()
+    out.write(tmp_path / "out.vtu")
+    back = hexfill.read(tmp_path / "out.vtu")
+    assert (back.quad_data["heat"] == np.arange(m)).all()
+    # meshio writes no field data into a VTU; the object has them.
+    assert sorted(hexfill.mesh.as_mesh(out).tag_names) == sorted(mesh.tag_names)
+    surface = mesh.surface.to_meshio()
+    assert (surface.cell_data["heat"][0] == np.arange(m)).all() and (surface.cell_data["tag"][0] == mesh.quad_tags).all()
+    # A vector on quads beside a number on hexes of the same name.
+    both = hexfill.HexMesh(
+        mesh.points, mesh.hexes, quads=quads, hex_data={"v": np.ones(12)}, quad_data={f"v:{k}": np.ones(m) for k in range(3)}
+    ).to_meshio()
+    assert set(both.cell_data) == {"v", "v:0", "v:1", "v:2"}
+
+
+def test_quadratic_cells_are_written(bar, tmp_path):
+    pyvista = pytest.importorskip("pyvista")
+    mesh = hexfill.fill(bar[0], bar[1])
+    mesh.write(tmp_path / "q.vtu", quadratic=True)
+    grid = pyvista.read(tmp_path / "q.vtu")
+    assert set(grid.celltypes) == {23, 25} and grid.extract_cells(grid.celltypes == 25).volume == pytest.approx(12)
+    assert (hexfill.read(tmp_path / "q.vtu", linearise=True).hexes == mesh.hexes).all()
+    with pytest.raises(hexfill.FileError, match="second order"):
+        hexfill.write(tmp_path / "q.mesh", mesh, quadratic=True)

@@ -89,7 +89,7 @@ pub(crate) fn read_data(input: &str, how: &InputArgs) -> Result<MeshData> {
     if !data.middles.is_empty() {
         bail!(
             "{input} has cells of higher order (quad8, quad9, hex20, ...), {} of its points lie between corners; add --linearise to read \
-             the corners alone (fill, convert, check, info), or export straight cells",
+             the corners alone (fill, embed, convert, check, info), or export straight cells",
             data.middles.len()
         );
     }
@@ -117,6 +117,53 @@ pub(crate) fn load_problem(input: &str, how: &InputArgs) -> Result<Problem> {
     }
     let name = if input == "-" { "stdin" } else { input };
     Ok(Problem::from_data(name, &read_data(input, how)?)?)
+}
+
+/// How a mesh is written: flags of the commands that write one of any kind.
+#[derive(clap::Args, Clone, Debug, Default)]
+pub(crate) struct OutputArgs {
+    /// Format of the output.
+    #[arg(long, value_name = "FORMAT", value_parser = parse_format)]
+    pub to: Option<Format>,
+    /// Write cells of second order on straight edges (20-node hexes, 8-node quads): a node in the middle of every edge. Valid as the
+    /// straight ones are. For .vtk, .vtu, .msh, .inp, .bdf and .unv.
+    #[arg(long)]
+    pub quadratic: bool,
+}
+
+impl OutputArgs {
+    /// Refuses an output path before any work is done: unknown extension, missing folder, a format without cells of second order.
+    pub(crate) fn check(&self, output: &str, reading: &InputArgs, console: &Console) -> Result<()> {
+        check_output(output, self.to)?;
+        if self.quadratic && reading.linearise {
+            console.note("--quadratic puts nodes in the middles of straight edges: nodes of the input between corners, which --linearise drops, do not come back");
+        }
+        let format = self.to.map_or_else(|| Format::from_path(Path::new(output)), Ok)?;
+        if self.quadratic && !format.holds_quadratic() {
+            bail!(
+                "{output}: {} has no cells of second order here; use .vtu, .vtk, .msh, .inp, .bdf or .unv, or leave out --quadratic",
+                format.title()
+            );
+        }
+        Ok(())
+    }
+
+    /// Refuses the path of a mesh before any work is done. `surface`: its boundary.
+    pub(crate) fn check_mesh(&self, output: &str, surface: &MeshData) -> Result<()> {
+        check_mesh_output(output, self.to, surface)?;
+        if self.quadratic {
+            surface.clone().into_quadratic()?;
+        }
+        Ok(())
+    }
+
+    /// Writes as the flags say; see [`write_data`].
+    pub(crate) fn write(&self, output: &str, data: &MeshData, console: &Console) -> Result<()> {
+        if self.quadratic {
+            return write_data(output, self.to, &data.clone().into_quadratic()?, console);
+        }
+        write_data(output, self.to, data, console)
+    }
 }
 
 /// Writes to a path (format by extension unless given) or, for `-`, to stdout; notes what the format cannot hold.

@@ -48,6 +48,41 @@ fn names_of_groups_go_through_every_command_and_format() {
         assert!(data.hex_tags.is_some(), "{extension}");
         done(dir.path(), &["check", &name("converted"), "--surface", "in.obj"]);
     }
+    // The viewer names them.
+    done(dir.path(), &["view", "filled.vtu", "--groups", "-o", "groups.html"]);
+    let page = std::fs::read_to_string(dir.path().join("groups.html")).unwrap();
+    assert!(page.contains(r#""names":["Box + inlet","Box + outlet + wall","Box + steel + wall"]"#), "groups by name");
+}
+
+/// Every command that writes cells of second order, in every format that has them: the corners are those of the straight mesh, and it is certified.
+#[test]
+fn quadratic_cells_are_written_if_asked_for() {
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("in.obj"), GROUPS).unwrap();
+    done(dir.path(), &["fill", "in.obj", "-o", "straight.vtu"]);
+    let straight = read_path(&dir.path().join("straight.vtu"), None).unwrap();
+    for extension in ["vtu", "vtk", "msh", "msh4", "inp", "bdf", "unv"] {
+        let name = |stem: &str| format!("{stem}.{extension}");
+        done(dir.path(), &["fill", "in.obj", "--quadratic", "-o", &name("filled")]);
+        done(dir.path(), &["convert", "straight.vtu", "--quadratic", "-o", &name("converted")]);
+        done(dir.path(), &["embed", &name("filled"), "--linearise", "--quadratic", "-o", &name("embedded")]);
+        for stem in ["filled", "converted", "embedded"] {
+            let data = read_path(&dir.path().join(name(stem)), None).unwrap();
+            assert_eq!(data.middles.len(), 20, "{stem}.{extension}: two boxes of 12 edges, 4 of them in common");
+            let data = data.linearised();
+            assert_eq!((&data.points, &data.hexes), (&straight.points, &straight.hexes), "{stem}.{extension}");
+            assert_eq!(names(&data), names(&straight), "{stem}.{extension}");
+            done(dir.path(), &["check", &name(stem), "--linearise", "--surface", "in.obj"]);
+        }
+    }
+    // Refused before the work.
+    for output in ["out.mesh", "out.ovm", "out.json"] {
+        let (code, _, err) = hexfill(dir.path(), &["fill", "in.obj", "--quadratic", "-o", output]);
+        assert!(code == 2 && err.contains("second order") && err.contains(".vtu"), "{err}");
+    }
+    // Nodes of a curved input are not those of the output, and that is said.
+    let (_, _, err) = hexfill(dir.path(), &["fill", "filled.vtu", "--linearise", "--quadratic", "-o", "again.vtu"]);
+    assert!(err.contains("do not come back"), "{err}");
 }
 
 #[test]

@@ -382,6 +382,10 @@ fn engine_and_layer_of_every_hex_are_written_and_agree_with_the_report() {
     let (code, _, err) = hexfill(dir.path(), &["view", "m.json", "-o", "m.html", "--field", "layer"]);
     assert_eq!(code, 0, "{err}");
     assert!(std::fs::read_to_string(dir.path().join("m.html")).unwrap().contains("\"layer\""));
+    let (code, _, err) = hexfill(dir.path(), &["view", "m.json", "-o", "m.png", "--groups"]);
+    assert!(code == 2 && err.contains("no groups"), "{err}");
+    let (code, out, err) = hexfill(dir.path(), &["view", "m.json", "m.json", "-o", "both.html", "--json"]);
+    assert!(code == 0 && common::json(&out)["hexes"].as_array().is_some_and(|n| n.len() == 2), "{err}");
     let (code, _, err) = hexfill(dir.path(), &["view", "m.json", "-o", "m.png", "--field", "nothing"]);
     assert!(code == 2 && err.contains("it has: certified_positive, scaled_jacobian, engine, layer"), "{err}");
 }

@@ -215,3 +215,22 @@ fn chords_are_drawn_and_their_quads_counted_once() {
         assert!(code == 2 && err.contains(word) && !at.join(file).exists(), "{err}");
     }
 }
+
+/// The estimate of `fill`, word for word; null where that would say nothing.
+#[test]
+fn the_estimate_of_fill_is_told() {
+    let dir = tempfile::tempdir().unwrap();
+    // A box of 12 x 12 x 12 that is bent: no grid fills it at once.
+    let (surface, cells) = hexfill::mesh::generate::voxels([12, 12, 12], |_| true).unwrap();
+    let bent = cells.into_iter().map(|p| p.map(f64::from)).map(|[x, y, z]| [x + 0.1 * y * y, y, z]).collect();
+    let data = hexfill::io::MeshData::from_quads(bent, surface.quads_raw());
+    hexfill::io::write_path(&dir.path().join("bent.obj"), None, &data).unwrap();
+    let told = info(dir.path(), "bent.obj")["estimate"].clone();
+    assert!(told["seconds"][0].as_f64() < told["seconds"][1].as_f64(), "{told}");
+    assert_eq!(told["engines"][0], "shelling");
+    let (_, out, _) = hexfill(dir.path(), &["info", "bent.obj"]);
+    let line = out.lines().find(|line| line.starts_with("estimate: about ")).expect("a line");
+    let (_, _, err) = hexfill(dir.path(), &["fill", "bent.obj", "--time-limit", "0"]);
+    assert!(err.contains(line), "{line}\n{err}");
+    assert!(info(dir.path(), ":cube")["estimate"].is_null());
+}

@@ -54,3 +54,28 @@ fn a_void_is_filled_and_the_hexes_of_the_file_stay() {
     let again = json(&std::fs::read_to_string(dir.path().join("again.json")).unwrap());
     assert_eq!(again["hexes"].as_array().unwrap()[..16], notched[..]);
 }
+
+/// Two cubes that share an edge are two regions: each is a solid, the whole is no manifold there, and that is said.
+#[test]
+fn solids_that_touch_in_an_edge_are_named() {
+    let dir = tempfile::tempdir().unwrap();
+    let cube = |corners: [usize; 8]| -> String {
+        let faces = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
+        faces.map(|face| format!("f {}\n", face.map(|i: usize| corners[i].to_string()).join(" "))).concat()
+    };
+    let mut text = String::new();
+    for (x, y) in [(0, 0), (1, 0), (1, 1), (0, 1), (2, 1), (2, 2), (1, 2)] {
+        text += &format!("v {x} {y} 0\nv {x} {y} 1\n");
+    }
+    // Vertex 2 i + 1 lies at the bottom of column i; column 2 is in both.
+    let columns = |c: [usize; 4]| -> [usize; 8] { std::array::from_fn(|i| 2 * c[i % 4] + 1 + i / 4) };
+    text += &(cube(columns([0, 1, 2, 3])) + &cube(columns([2, 4, 5, 6])));
+    std::fs::write(dir.path().join("edge.obj"), text).unwrap();
+    let (code, out, err) = hexfill(dir.path(), &["fill", "edge.obj", "-o", "whole.vtu", "--json"]);
+    assert_eq!(code, 0, "{err}");
+    assert!(err.contains("touch in edges (1)") && json(&out)["notes"].to_string().contains("no manifold"), "{err}");
+    let (code, out, _) = hexfill(dir.path(), &["check", "whole.vtu"]);
+    assert!(code == 1 && out.contains("edge-pinched"), "{out}");
+    let (_, _, err) = hexfill(dir.path(), &["fill", &three(), "-o", "three.vtu"]);
+    assert!(!err.contains("no manifold"), "{err}");
+}

@@ -6,6 +6,7 @@
 
 use crate::error::WriteError;
 use crate::format::Format;
+use crate::quadratic::Quadratic;
 use hexfill_mesh::{HexMesh, HexMeshError, QuadSurface, SurfaceError};
 use std::collections::BTreeMap;
 
@@ -118,6 +119,9 @@ pub struct MeshData {
     /// The points that lie only on edges, faces or insides of cells of higher order, rising; those cells are in the other arrays
     /// with their corners alone. See [`linearised`](Self::linearised).
     pub middles: Vec<u32>,
+    /// What is written in place of `quads` and `hexes`: the same with nodes on their edges. Readers leave it empty; see
+    /// [`into_quadratic`](Self::into_quadratic).
+    pub quadratic: Option<Quadratic>,
     /// False if the file has connectivity only.
     pub has_coordinates: bool,
     /// What was recognised and what was passed over, for the user.
@@ -142,6 +146,7 @@ impl Default for MeshData {
             quad_data: Vec::new(),
             hex_data: Vec::new(),
             middles: Vec::new(),
+            quadratic: None,
             has_coordinates: true,
             notes: Vec::new(),
         }
@@ -239,6 +244,7 @@ impl MeshData {
             hex_tags: None,
             hex_data: Vec::new(),
             tag_names: self.tag_names.iter().filter(|n| n.on != TagOn::Cells).cloned().collect(),
+            quadratic: self.quadratic.clone().map(Quadratic::without_hexes),
             ..self.clone()
         }
     }
@@ -282,7 +288,8 @@ impl MeshData {
         let faces = self.quads.iter_mut().flatten().chain(self.other_faces.iter_mut().flat_map(|f| &mut f.vertices));
         let cells = self.hexes.iter_mut().flatten().chain(self.tets.iter_mut().flatten());
         let rest = self.wedges.iter_mut().flatten().chain(self.pyramids.iter_mut().flatten());
-        faces.chain(cells).chain(rest).for_each(|v| *v = number[*v as usize]);
+        let second = self.quadratic.iter_mut().flat_map(Quadratic::nodes_mut);
+        faces.chain(cells).chain(rest).chain(second).for_each(|v| *v = number[*v as usize]);
     }
 
     /// The names of each tag.
@@ -349,6 +356,13 @@ impl MeshData {
                 remedy: "write the surface alone, or use a mesh format such as .vtk, .vtu, .mesh or .msh".to_owned(),
             });
         }
+        if self.quadratic.is_some() && !format.holds_quadratic() {
+            return Err(WriteError::CannotHold {
+                format,
+                what: "cells of second order".to_owned(),
+                remedy: "use .vtu, .vtk, .msh, .inp, .bdf or .unv, or write straight cells".to_owned(),
+            });
+        }
         if !format.holds_polygons()
             && let Some(face) = self.other_faces.iter().find(|f| f.vertices.len() != 3)
         {
@@ -400,6 +414,10 @@ impl MeshData {
             if given != due {
                 return Err(WriteError::Inconsistent { what: format!("{name} has {given} values instead of {due}") });
             }
+        }
+        if self.quadratic.as_ref().is_some_and(|q| !q.fits(self)) {
+            let what = "`quadratic` is not of these quads and hexes".to_owned();
+            return Err(WriteError::Inconsistent { what });
         }
         if let Some(face) = self.other_faces.iter().find(|f| f.vertices.len() < 3 || f.vertices.len() == 4) {
             let what = format!("an entry of `other_faces` has {} vertices", face.vertices.len());

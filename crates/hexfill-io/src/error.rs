@@ -199,6 +199,31 @@ pub enum WriteError {
     },
 }
 
+/// Why cells cannot become cells of second order.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum QuadraticError {
+    /// There is nowhere to put a node.
+    #[error("nodes in the middles of edges need coordinates and the mesh has none; compute positions first (embed)")]
+    NoCoordinates,
+    /// Straight cells beside them would not fit.
+    #[error(
+        "{faces} faces and {cells} cells are no quads or hexes; cells of second order are written for these alone: leave out --quadratic"
+    )]
+    OtherCells {
+        /// Faces that are no quads.
+        faces: usize,
+        /// Cells that are no hexes.
+        cells: usize,
+    },
+    /// More points than 32-bit ids can name.
+    #[error("the mesh would have {given} points, the limit is 4294967295")]
+    TooMany {
+        /// How many there would be.
+        given: usize,
+    },
+}
+
 /// A snippet of input for a message: printable, at most 40 characters, quoted.
 pub(crate) fn snippet(bytes: &[u8]) -> String {
     const LONGEST: usize = 40;

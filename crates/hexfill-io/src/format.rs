@@ -250,6 +250,11 @@ impl Format {
         matches!(self, Self::Obj | Self::Off | Self::Ply | Self::Vtk | Self::Vtu | Self::Ovm | Self::Json)
     }
 
+    /// Whether cells of second order (8-node quads, 20-node hexes) are written.
+    pub fn holds_quadratic(self) -> bool {
+        matches!(self, Self::Vtk | Self::Vtu | Self::Msh22 | Self::Msh41 | Self::Inp | Self::Nastran | Self::Unv)
+    }
+
     /// Whether quads (and hexes, if it holds them) keep their tags.
     pub fn holds_cell_tags(self) -> bool {
         self != Self::Off

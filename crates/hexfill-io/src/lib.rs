@@ -33,14 +33,16 @@ mod groups;
 mod limits;
 mod losses;
 pub mod orders;
+mod quadratic;
 mod save;
 mod source;
 mod weld;
 mod write;
 
 pub use data::{MeshData, OtherFace, TagName, TagOn};
-pub use error::{Place, Position, ReadError, WriteError};
+pub use error::{Place, Position, QuadraticError, ReadError, WriteError};
 pub use format::{Compression, Format, FormatError};
+pub use quadratic::Quadratic;
 pub use save::{Encoding, check_path, write_path, write_path_with, write_to, write_to_with};
 pub use weld::{Weld, closing_tolerance, weld};
 

@@ -23,6 +23,25 @@ pub const OVM_HALF_FACES: [[usize; 4]; 6] =
 pub const ABAQUS_FACES: [[usize; 4]; 6] =
     [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
 
+/// The edges of a quad, in the order of the middle nodes of VTK_QUADRATIC_QUAD, Gmsh, Abaqus and Nastran.
+pub const QUAD_EDGES: [[usize; 2]; 4] = [[0, 1], [1, 2], [2, 3], [3, 0]];
+
+/// The edges of a hexahedron, in the order of the middle nodes of VTK_QUADRATIC_HEXAHEDRON and of C3D20: bottom, top, upright.
+pub const HEX_EDGES: [[usize; 2]; 12] =
+    [[0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 7], [7, 4], [0, 4], [1, 5], [2, 6], [3, 7]];
+
+/// The 20-node hexahedron of Gmsh: middles in the order of their smaller, then of their larger corner.
+pub const GMSH_HEX20: [usize; 20] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 16, 9, 17, 10, 18, 19, 12, 15, 13, 14];
+
+/// `CHEXA` of Nastran with 20 nodes: bottom, upright, top.
+pub const NASTRAN_HEX20: [usize; 20] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 16, 17, 18, 19, 12, 13, 14, 15];
+
+/// The parabolic quadrilateral of I-DEAS: corners and middles by turns.
+pub const UNV_QUAD8: [usize; 8] = [0, 4, 1, 5, 2, 6, 3, 7];
+
+/// The parabolic brick of I-DEAS: bottom corners and middles by turns, upright middles, top corners and middles by turns.
+pub const UNV_HEX20: [usize; 20] = [0, 8, 1, 9, 2, 10, 3, 11, 16, 17, 18, 19, 4, 12, 5, 13, 6, 14, 7, 15];
+
 /// Puts the nodes of one order into the other (`PIXEL`, `VOXEL`, `OVM_ADD_CELL`: either way).
 #[inline]
 pub fn reorder<const N: usize>(nodes: [u32; N], table: [usize; N]) -> [u32; N] {
@@ -40,6 +59,22 @@ mod tests {
             assert_eq!(table.map(|i| table[i]), [0, 1, 2, 3, 4, 5, 6, 7]);
         }
         assert_eq!(PIXEL.map(|i| PIXEL[i]), [0, 1, 2, 3]);
+    }
+
+    #[test]
+    fn middles_stand_on_edges_once() {
+        for [a, b] in HEX_EDGES {
+            let apart = (0..3).filter(|&k| POSITIONS[a][k] != POSITIONS[b][k]).count();
+            assert_eq!(apart, 1, "{a} {b}");
+        }
+        for table in [GMSH_HEX20, NASTRAN_HEX20, UNV_HEX20] {
+            let mut sorted = table;
+            sorted.sort_unstable();
+            assert!(sorted.iter().copied().eq(0..20));
+        }
+        let ends =
+            |i: usize| [HEX_EDGES[i - 8][0].min(HEX_EDGES[i - 8][1]), HEX_EDGES[i - 8][0].max(HEX_EDGES[i - 8][1])];
+        assert!(GMSH_HEX20[8..].is_sorted_by_key(|&i| ends(i)));
     }
 
     #[test]

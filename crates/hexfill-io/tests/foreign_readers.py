@@ -268,6 +268,9 @@ READERS = {
 def check(directory):
     due = load_expected(directory)
     for path in sorted(directory.glob("*.*")):
+        if path.name.startswith("quadratic-"):
+            check_quadratic(path, due)
+            continue
         for reader in READERS[path.suffix]:
             binary = "-binary" in path.name
             if reader is by_meshio and binary and path.suffix == ".ply":
@@ -293,6 +296,57 @@ def check(directory):
             compare_data(path, reader)
             tags = "with tags" if found.quad_tags is not None else "without tags"
             print(f"ok {path.name} {reader.__name__} {tags}")
+
+
+QUAD_EDGES = [(0, 1), (1, 2), (2, 3), (3, 0)]
+HEX_EDGES = QUAD_EDGES + [(4, 5), (5, 6), (6, 7), (7, 4)] + [(k, k + 4) for k in range(4)]
+
+
+def cells_of_second_order(path, reader):
+    """Points and the 8-node quads and 20-node hexes a program finds, and the edges of its middle nodes."""
+    if reader is by_meshio:
+        m = meshio.gmsh.read(path) if path.suffix == ".msh" else meshio.read(path)
+        assert {block.type for block in m.cells} <= {"quad8", "hexahedron20"}, (path, m)
+        of = lambda kind: [c for block in m.cells if block.type == kind for c in block.data]
+        return m.points, of("quad8"), of("hexahedron20"), HEX_EDGES
+    if reader is by_pyvista:
+        p = pyvista.read(path)
+        assert set(p.celltypes) <= {23, 25}, (path, p.celltypes)
+        return p.points, p.cells_dict.get(23, []), p.cells_dict.get(25, []), HEX_EDGES
+    gmsh_open(path)
+    try:
+        numbers, coordinates, _ = gmsh.model.mesh.getNodes()
+        where = {int(n): i for i, n in enumerate(numbers)}
+        of = lambda kind, n: [[where[int(v)] for v in c] for c in np.reshape(gmsh.model.mesh.getElementsByType(kind)[1], (-1, n))]
+        points, quads, hexes = np.reshape(coordinates, (-1, 3)), of(16, 8), of(17, 20)
+        jacobians = gmsh.model.mesh.getJacobians(17, [0.3, -0.2, 0.6])[1] if hexes else []
+        assert all(j > 0 for j in jacobians), (path, jacobians)
+        return points, quads, hexes, sorted(tuple(sorted(e)) for e in HEX_EDGES)
+    finally:
+        gmsh.finalize()
+
+
+def check_quadratic(path, due):
+    """Corners as in the straight mesh; each middle node at the mean of the ends of the edge it is on by that program's order."""
+    for reader in READERS[path.suffix]:
+        if reader is by_gmsh and path.suffix == ".vtk":
+            continue  # Gmsh 4.15 takes the nodes of VTK_QUADRATIC_HEXAHEDRON for its own order
+        points, quads, hexes, hex_edges = cells_of_second_order(path, reader)
+        points = np.asarray(points)[:, :3]
+        tolerance = 1e-9 if path.suffix == ".bdf" else 1e-15
+        for cells, corners, edges in [(quads, 4, QUAD_EDGES), (hexes, 8, hex_edges)]:
+            for cell in cells:
+                for node, (a, b) in zip(cell[corners:], edges):
+                    mean = (points[cell[a]] + points[cell[b]]) / 2
+                    assert np.abs(points[node] - mean).max() <= tolerance, (path, reader, node, points[node], mean)
+        straight = Mesh(points, [q[:4] for q in quads], [h[:8] for h in hexes])
+        used = sorted({v for cell in straight.quads + straight.hexes for v in cell})
+        assert len(points) == len(due.points) + 20, (path, reader, len(points))
+        number = {v: i for i, v in enumerate(used)}
+        renumber = lambda cells: [[number[v] for v in cell] for cell in cells]
+        straight = Mesh(points[used], renumber(straight.quads), renumber(straight.hexes))
+        compare(straight, due, tolerance, path.suffix != ".inp", True, f"{path.name} {reader.__name__}")
+        print(f"ok {path.name} {reader.__name__}")
 
 
 def compare_data(path, reader):

@@ -58,6 +58,10 @@ fn write_all(directory: &Path) {
             let extension = if format == Format::Msh41 { "msh" } else { format.extensions()[0] };
             let path = directory.join(format!("{format}{binary}.{extension}"));
             write_path_with(&path, Some(format), &mesh, encoding).unwrap();
+            if format.holds_quadratic() {
+                let path = directory.join(format!("quadratic-{format}{binary}.{extension}"));
+                write_path_with(&path, Some(format), &mesh.clone().into_quadratic().unwrap(), encoding).unwrap();
+            }
             // The surface alone, which is what most files will be.
             let path = directory.join(format!("{format}{binary}-surface.{extension}"));
             write_path_with(&path, Some(format), &mesh.surface_only(), encoding).unwrap();

@@ -79,6 +79,43 @@ fn names_of_groups_come_back() {
     }
 }
 
+/// Cells of second order come back as their corners, with all that they carry.
+#[test]
+fn quadratic_cells_have_the_same_corners() {
+    for (format, encoding) in flavours() {
+        let mesh = chiral_for(format);
+        let quadratic = mesh.clone().into_quadratic().unwrap();
+        assert_eq!(quadratic.points.len(), 12 + 20);
+        if !format.holds_quadratic() {
+            let error = write_to_with(Vec::new(), format, &quadratic, encoding).unwrap_err().to_string();
+            assert!(error.contains("second order") && error.contains(".vtu"), "{error}");
+            continue;
+        }
+        for (mesh, quadratic) in [(mesh.clone(), quadratic.clone()), (mesh.surface_only(), quadratic.surface_only())] {
+            let back = round_trip(&quadratic, format, encoding);
+            assert_eq!(back.points.len(), 32);
+            let back = with_any_first_corner(back, format);
+            // Without hexes the nodes of inner edges are on nothing.
+            let mut back = MeshData { middles: (12..32).collect(), ..back }.linearised();
+            back.notes.clear();
+            assert_same(&back, &with_any_first_corner(mesh, format), &format!("{format} {encoding:?}"));
+        }
+    }
+}
+
+#[test]
+fn quadratic_cells_must_fit() {
+    let mut mesh = common::chiral().into_quadratic().unwrap();
+    mesh.hexes.pop();
+    mesh.hex_tags = None;
+    let error = write_to_with(Vec::new(), Format::Vtu, &mesh, Encoding::Text).unwrap_err().to_string();
+    assert!(error.contains("inconsistent"), "{error}");
+    let error = mixed().into_quadratic().unwrap_err().to_string();
+    assert!(error.contains("faces") && error.contains("--quadratic"), "{error}");
+    let nowhere = MeshData { has_coordinates: false, points: Vec::new(), ..common::chiral() };
+    assert!(nowhere.into_quadratic().unwrap_err().to_string().contains("coordinates"));
+}
+
 #[test]
 fn all_kinds_of_cells_and_faces() {
     for (format, encoding) in flavours() {

@@ -4,7 +4,7 @@
 mod common;
 
 use common::Shape;
-use hexfill_view::{Picture, ViewInput, html, png, png_with};
+use hexfill_view::{Groups, Picture, ViewInput, html, pair_png, png, png_with, write_pair_html};
 use std::path::Path;
 
 fn main() -> std::io::Result<()> {
@@ -27,6 +27,7 @@ fn main() -> std::io::Result<()> {
         mesh: &broken.mesh,
         hex_values: Some(("Scaled Jacobian", &[1.0])),
         shelling: Some(&[]),
+        groups: None,
         facts: &[],
     };
     std::fs::write(Path::new(&folder).join("broken.html"), html(&input))?;
@@ -46,15 +47,35 @@ fn main() -> std::io::Result<()> {
             mesh: &shape.mesh,
             hex_values: Some(("Scaled Jacobian", &quality)),
             shelling: Some(&order),
+            groups: None,
             facts: &facts,
         };
         let folder = Path::new(&folder);
         std::fs::write(folder.join(format!("{name}.html")), html(&input))?;
         std::fs::write(folder.join(format!("{name}.png")), png(&input, 1200, 640))?;
+        if *name == "grid" {
+            groups_and_pair(folder, &input)?;
+        }
         input.hex_values = None;
         std::fs::write(folder.join(format!("{name}-plain.html")), html(&input))?;
         let dark = Picture { dark: true, ..Picture::new(600, 560) };
         std::fs::write(folder.join(format!("{name}-dark.png")), png_with(&input, &dark))?;
     }
     Ok(())
+}
+
+/// A mesh whose boundary has groups by the direction of the quads, and two meshes beside each other.
+fn groups_and_pair(folder: &Path, input: &ViewInput<'_>) -> std::io::Result<()> {
+    let quads = input.mesh.boundary_quads_raw();
+    let height = |quad: &[u32; 4]| quad.map(|v| input.points[v as usize][2]);
+    let tags: Vec<i64> =
+        quads.iter().map(|quad| i64::from(height(quad).iter().all(|z| *z == height(quad)[0]))).collect();
+    let groups = Groups::new(input.mesh, &quads, &tags, |tag| format!("level <{tag}>"), true);
+    let with = ViewInput { groups: groups.as_ref(), ..*input };
+    std::fs::write(folder.join("groups.html"), html(&with))?;
+    std::fs::write(folder.join("groups.png"), png(&with, 1200, 640))?;
+    let mut page = Vec::new();
+    write_pair_html([input, &with], &mut page)?;
+    std::fs::write(folder.join("pair.html"), page)?;
+    std::fs::write(folder.join("pair.png"), pair_png([input, &with], 1200, 640))
 }

@@ -15,6 +15,35 @@ pub(crate) const UNKNOWN: Rgb = [0x9a, 0xa0, 0xa6];
 /// Hexes of quality 0 or less.
 pub(crate) const FLAGGED: Rgb = [0xd0, 0x00, 0xc8];
 
+/// Colours that stay apart for most eyes (after Okabe and Ito), as `category` of `viewer/src/colour.ts`.
+const CATEGORIES: [Rgb; 12] = [
+    [230, 130, 0],
+    [56, 150, 220],
+    [0, 158, 115],
+    [213, 80, 20],
+    [190, 110, 170],
+    [0, 100, 178],
+    [220, 200, 40],
+    [120, 120, 130],
+    [140, 86, 50],
+    [90, 190, 190],
+    [150, 60, 160],
+    [110, 150, 30],
+];
+
+/// The colour of group `i`: from the list, then by the golden angle round the circle of hues.
+pub(crate) fn category(i: usize) -> Rgb {
+    if let Some(colour) = CATEGORIES.get(i) {
+        return *colour;
+    }
+    let hue = (i as f64 * 137.508) % 360.0;
+    let light: f64 = [0.5, 0.62, 0.4][i % 3];
+    [0.0, 8.0, 4.0].map(|n| {
+        let k = (n + hue / 30.0) % 12.0;
+        (255.0 * (light - 0.62 * light.min(1.0 - light) * (k - 3.0).min(9.0 - k).clamp(-1.0, 1.0))).round() as u8
+    })
+}
+
 /// Quality, from bad to good.
 pub(crate) const QUALITY: [Rgb; 9] = [
     [0xa5, 0x00, 0x26],

@@ -12,7 +12,9 @@ mod chord_drawing;
 mod circle_packing;
 mod colour;
 mod gallery;
+mod groups;
 mod page;
+mod pair;
 mod picture;
 mod raster;
 
@@ -21,6 +23,8 @@ use std::io::{self, Write};
 
 pub use chord_drawing::{ChordDrawing, DrawingError, MOST_QUADS, chord_drawing, chord_thumbnail};
 pub use gallery::{GalleryItem, gallery};
+pub use groups::Groups;
+pub use pair::{pair_png, write_pair_html};
 pub use picture::{Panels, Picture, png, png_with};
 
 /// What is shown.
@@ -37,6 +41,8 @@ pub struct ViewInput<'a> {
     pub hex_values: Option<(&'a str, &'a [f64])>,
     /// The hexes in the order of a shelling, for the animation; without one it runs in index order.
     pub shelling: Option<&'a [HexId]>,
+    /// Groups of quads, told apart by colour.
+    pub groups: Option<&'a Groups>,
     /// Lines of a small table beside the picture: name and value, any text.
     pub facts: &'a [(String, String)],
 }
@@ -98,7 +104,7 @@ impl ViewInput<'_> {
 /// let mesh = HexMesh::try_new(8, &[[0, 1, 2, 3, 4, 5, 6, 7]])?;
 /// let corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]];
 /// let points = corners.map(|p| p.map(f64::from));
-/// let input = ViewInput { title: "a cube", points: &points, mesh: &mesh, hex_values: None, shelling: None, facts: &[] };
+/// let input = ViewInput { title: "a cube", points: &points, mesh: &mesh, hex_values: None, shelling: None, groups: None, facts: &[] };
 /// assert!(input.problems().is_empty() && html(&input).contains("<title>a cube"));
 /// # Ok::<(), hexfill_mesh::HexMeshError>(())
 /// ```

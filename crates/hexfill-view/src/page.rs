@@ -4,7 +4,7 @@
 //! no title and no fact can end an element. The template is cut at its marks once and what is put in is never searched again.
 
 use crate::ViewInput;
-use crate::colour::{FLAGGED, GROWTH, INSIDE, QUALITY, Rgb, SURFACE, Scale, UNKNOWN};
+use crate::colour::{FLAGGED, GROWTH, INSIDE, QUALITY, Rgb, SURFACE, Scale, UNKNOWN, category};
 use crate::picture::{Panels, Picture, png_with};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -32,6 +32,7 @@ struct Data<'a> {
     values: Option<Values<'a>>,
     /// `hexes` uint32, if a shelling was given.
     shelling: Option<String>,
+    groups: Option<GroupData<'a>>,
     facts: &'a [(String, String)],
     problems: Vec<String>,
     colours: Colours,
@@ -46,6 +47,17 @@ struct Values<'a> {
     high: f64,
     flags_nonpositive: bool,
     ramp: &'static [Rgb],
+}
+
+#[derive(Serialize)]
+struct GroupData<'a> {
+    names: &'a [String],
+    colours: Vec<Rgb>,
+    /// uint32, rising: 6 times the hex plus the side.
+    facets: String,
+    /// uint32: the group of each of these.
+    of: String,
+    first: bool,
 }
 
 #[derive(Serialize)]
@@ -138,6 +150,13 @@ fn json(input: &ViewInput<'_>) -> io::Result<String> {
             }
         }),
         shelling: input.order().map(|order| encode(order.iter().map(|h| h.0.to_le_bytes()))),
+        groups: input.groups.map(|groups| GroupData {
+            names: &groups.names,
+            colours: (0..groups.names.len()).map(category).collect(),
+            facets: encode(groups.facets.iter().map(|f| f.0.to_le_bytes())),
+            of: encode(groups.facets.iter().map(|f| f.1.to_le_bytes())),
+            first: groups.first,
+        }),
         facts: input.facts,
         problems: input.problems(),
         colours: Colours {

@@ -3,7 +3,7 @@
 //! Parallel projection along a fixed direction, z up; see [`crate::raster`] for why the bytes are reproducible.
 
 use crate::ViewInput;
-use crate::colour::{INSIDE, Rgb, SURFACE, Scale};
+use crate::colour::{INSIDE, Rgb, SURFACE, Scale, category};
 use crate::raster::{Canvas, Corner};
 use hexfill_mesh::Facet;
 
@@ -47,6 +47,11 @@ impl Picture {
         let panels = if 2 * u64::from(width) >= 3 * u64::from(height) { Panels::Both } else { Panels::CutAway };
         Self { width, height, panels, shrink: 0.86, dark: false }
     }
+
+    /// Width and height within their limits.
+    pub(crate) fn size(&self) -> (u32, u32) {
+        (self.width.clamp(16, 8192), self.height.clamp(16, 8192))
+    }
 }
 
 /// Draws `input` as a PNG file (8-bit RGB) of `width` by `height` pixels: [`png_with`] and [`Picture::new`].
@@ -56,8 +61,12 @@ pub fn png(input: &ViewInput<'_>, width: u32, height: u32) -> Vec<u8> {
 
 /// Draws `input` as a PNG file (8-bit RGB). Hexes without finite positions are left out; never fails.
 pub fn png_with(input: &ViewInput<'_>, picture: &Picture) -> Vec<u8> {
-    let (width, height) = (picture.width.clamp(16, 8192), picture.height.clamp(16, 8192));
-    let rows = draw(input, picture, width as usize, height as usize);
+    let (width, height) = picture.size();
+    encoded(width, height, &draw_rows(input, picture))
+}
+
+/// Rows of pixels, three bytes each, as a PNG file.
+pub(crate) fn encoded(width: u32, height: u32, rows: &[u8]) -> Vec<u8> {
     let mut file = Vec::new();
     let mut encoder = png::Encoder::new(&mut file, width, height);
     encoder.set_color(png::ColorType::Rgb);
@@ -65,14 +74,17 @@ pub fn png_with(input: &ViewInput<'_>, picture: &Picture) -> Vec<u8> {
     encoder.set_compression(png::Compression::Balanced);
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
     let written = encoder.write_header().and_then(|mut w| {
-        w.write_image_data(&rows)?;
+        w.write_image_data(rows)?;
         w.finish()
     });
     written.expect("rows have the size of the header, and memory takes them");
     file
 }
 
-fn draw(input: &ViewInput<'_>, picture: &Picture, width: usize, height: usize) -> Vec<u8> {
+/// The pixels of a picture, row by row.
+pub(crate) fn draw_rows(input: &ViewInput<'_>, picture: &Picture) -> Vec<u8> {
+    let (width, height) = picture.size();
+    let (width, height) = (width as usize, height as usize);
     let (top, bottom): (Rgb, Rgb) =
         if picture.dark { ([0x23, 0x28, 0x30], [0x14, 0x17, 0x1c]) } else { ([0xff; 3], [0xee, 0xf1, 0xf4]) };
     let (w, h) = (width * SAMPLES, height * SAMPLES);
@@ -216,7 +228,9 @@ impl<'a> Scene<'a> {
         }
         for &h in self.drawn.iter().filter(|&&h| !cut || self.kept[h as usize]) {
             let centre = self.centre(h);
-            let plain = self.scale.map(|(scale, values)| scale.colour(values[h as usize]));
+            let groups = self.input.groups.filter(|groups| groups.first);
+            let scale = self.scale.filter(|_| groups.is_none());
+            let plain = scale.map(|(scale, values)| scale.colour(values[h as usize]));
             for side in 0..6 {
                 let facet = Facet::new(hexfill_mesh::HexId(h), side);
                 let beyond = mesh.neighbour(facet);
@@ -227,6 +241,8 @@ impl<'a> Scene<'a> {
                 if hidden {
                     continue;
                 }
+                let group = groups.and_then(|groups| groups.of(6 * h + side as u32));
+                let plain = group.map(|group| category(group as usize)).or(plain);
                 let colour = plain.unwrap_or(if beyond.is_none() { SURFACE } else { INSIDE });
                 let p = mesh.facet_vertices(facet).map(|v| {
                     let p = self.input.points[v.index()];

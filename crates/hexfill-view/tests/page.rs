@@ -4,12 +4,20 @@ mod common;
 
 use base64::Engine as _;
 use common::{ball, grid};
-use hexfill_mesh::{HexId, HexMesh};
-use hexfill_view::{ViewInput, html, write_html};
+use hexfill_mesh::{Facet, HexId, HexMesh};
+use hexfill_view::{Groups, ViewInput, html, write_html};
 use serde_json::Value;
 
 fn input<'a>(shape: &'a common::Shape, title: &'a str) -> ViewInput<'a> {
-    ViewInput { title, points: &shape.points, mesh: &shape.mesh, hex_values: None, shelling: None, facts: &[] }
+    ViewInput {
+        title,
+        points: &shape.points,
+        mesh: &shape.mesh,
+        hex_values: None,
+        shelling: None,
+        groups: None,
+        facts: &[],
+    }
 }
 
 /// The data element of a page.
@@ -123,6 +131,59 @@ fn the_data_come_back() {
             ..input(&shape, "Ball")
         })
     );
+}
+
+/// Groups name their facets, walls inside count on both sides, and pictures take their colours.
+#[test]
+fn groups_of_quads_come_back() {
+    let shape = grid(2, 1, 1);
+    let quads = shape.mesh.boundary_quads_raw();
+    let wall = (0..6).map(|side| Facet::new(HexId(0), side)).find(|f| shape.mesh.neighbour(*f).is_some()).unwrap();
+    let wall = shape.mesh.facet_vertices(wall).map(|v| v.0);
+    let all: Vec<[u32; 4]> = quads.iter().copied().chain([wall, [0, 1, 2, 90]]).collect();
+    let tags: Vec<i64> = (0..12).map(|i| [-3, 0, 7, 0, 0, 0, 0, 0, 0, 0, 9, 8][i]).collect();
+    let name = |tag: i64| format!("<{tag}>");
+    for first in [false, true] {
+        let groups = Groups::new(&shape.mesh, &all, &tags, name, first).unwrap();
+        let with = ViewInput { groups: Some(&groups), ..input(&shape, "groups") };
+        let data = data(&html(&with));
+        assert_eq!(data["groups"]["names"], serde_json::json!(["<-3>", "<7>", "<9>"]));
+        assert_eq!(
+            (data["groups"]["first"].as_bool(), data["groups"]["colours"][0][0].as_u64()),
+            (Some(first), Some(230))
+        );
+        let ids = |key: &str| -> Vec<u32> {
+            let bytes = bytes(&data["groups"][key]);
+            bytes.chunks_exact(4).map(|b| u32::from_le_bytes(b.try_into().unwrap())).collect()
+        };
+        let (facets, of) = (ids("facets"), ids("of"));
+        assert!(facets.is_sorted() && facets.len() == 4 && of.iter().filter(|g| **g == 2).count() == 2);
+        let plain = hexfill_view::png(&input(&shape, ""), 320, 160);
+        assert_eq!(hexfill_view::png(&with, 320, 160) == plain, !first);
+    }
+    assert_eq!(Groups::new(&shape.mesh, &quads, &[0; 10], name, true), None);
+}
+
+/// Both pages are whole and escaped once; the picture has both halves.
+#[test]
+fn two_meshes_stand_beside_each_other() {
+    let (left, right) = (grid(2, 1, 1), ball(2, 1));
+    let (left, right) = (input(&left, "a \"b\""), input(&right, "<c>"));
+    let mut page = Vec::new();
+    hexfill_view::write_pair_html([&left, &right], &mut page).unwrap();
+    let page = String::from_utf8(page).unwrap();
+    assert!(page.contains("<title>a &quot;b&quot; | &lt;c&gt;</title>"));
+    let frames: Vec<&str> = page.split("srcdoc=\"").skip(1).map(|rest| rest.split_once('"').unwrap().0).collect();
+    assert_eq!(frames.len(), 2);
+    for (frame, input) in frames.iter().zip([&left, &right]) {
+        let text = [("&lt;", "<"), ("&gt;", ">"), ("&quot;", "\""), ("&#39;", "'"), ("&amp;", "&")];
+        let inner = text.iter().fold((*frame).to_owned(), |text, (from, to)| text.replace(from, to));
+        assert_eq!(inner, html(input));
+    }
+    let picture = hexfill_view::pair_png([&left, &right], 400, 200);
+    assert_eq!(picture[16..24], [0, 0, 1, 0x90, 0, 0, 0, 200]);
+    assert_eq!(hexfill_view::pair_png([&left, &right], 400, 200), picture);
+    assert_ne!(hexfill_view::pair_png([&right, &left], 400, 200), picture);
 }
 
 #[test]

@@ -7,7 +7,15 @@ use hexfill_mesh::HexMesh;
 use hexfill_view::{Panels, Picture, ViewInput, png, png_with};
 
 fn input(shape: &common::Shape) -> ViewInput<'_> {
-    ViewInput { title: "", points: &shape.points, mesh: &shape.mesh, hex_values: None, shelling: None, facts: &[] }
+    ViewInput {
+        title: "",
+        points: &shape.points,
+        mesh: &shape.mesh,
+        hex_values: None,
+        shelling: None,
+        groups: None,
+        facts: &[],
+    }
 }
 
 /// Width, height and pixels of a PNG file.

@@ -1,5 +1,5 @@
 // Opens pages in headless Chromium, over the debugging pipe, in real time: pictures and the exercise.
-// Usage: node drive.mjs PAGE.html [--shot OUT.png] [--hash LINK] [--size 1280x800] [--dark] [--no-webgl] [--exercise]
+// Usage: node drive.mjs PAGE.html [--shot OUT.png] [--hash LINK] [--size 1280x800] [--dark] [--no-webgl] [--exercise] [--pair]
 // Exit code 1 if the page has an error, asks for anything over a network, or does not start (with --no-webgl: does not
 // say why it did not start). Environment: CHROMIUM is the browser to use.
 import { spawn } from "node:child_process";
@@ -58,7 +58,10 @@ async function run() {
   await send("Emulation.setEmulatedMedia", { features: [{ name: "prefers-color-scheme", value: flag("--dark") ? "dark" : "light" }] });
   const hash = option("--hash", "");
   await send("Page.navigate", { url: pathToFileURL(page).href + (hash && `#${hash}`) });
-  const words = 'document.readyState === "complete" ? document.body.className + "|" + document.getElementById("why").textContent : ""';
+  const one = 'document.readyState === "complete" ? document.body.className + "|" + document.getElementById("why").textContent : ""';
+  // Two pages in frames: both must be ready.
+  const both = '[...document.querySelectorAll("iframe")].filter((f) => f.contentDocument?.body?.className.includes("ready")).length === 2 ? "ready" : ""';
+  const words = flag("--pair") ? both : one;
   let state = "";
   for (let i = 0; i < 600 && !/^ready|could not start/.test(state); i++) {
     await wait(100);
@@ -72,6 +75,7 @@ async function run() {
   } else if (!state.startsWith("ready")) {
     throw new Error(`the interactive view did not start: ${state}`);
   }
+  if (flag("--pair")) console.log(await evaluate(readFileSync(join(dirname(fileURLToPath(import.meta.url)), "pair.js"), "utf8")));
   if (flag("--exercise")) console.log(await evaluate(readFileSync(join(dirname(fileURLToPath(import.meta.url)), "exercise.js"), "utf8")));
   if (flag("--shot")) {
     const { data } = await send("Page.captureScreenshot", { format: "png" });

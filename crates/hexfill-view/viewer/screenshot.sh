@@ -19,6 +19,8 @@ drive ball start
 drive ball cut --hash 'cut=0.5&shrink=0.85'
 drive ball xray --hash 'singular=inside&boundary=xray&chord=all' --dark
 drive ball-plain sheets --hash 'sheet=all&sheetAs=surface&boundary=glass&cut=0.5'
+drive groups groups --exercise
+drive pair pair --pair --size 1400x800
 drive grid-plain build --hash 'shown=40&shrink=0.9' --dark
 drive grid narrow --size 420x860
 drive ball still --no-webgl

@@ -3,7 +3,6 @@
 use crate::console::Console;
 use crate::exit::Exit;
 use crate::files;
-use hexfill::io::Format;
 
 /// Flags of `convert`.
 #[derive(clap::Args)]
@@ -15,14 +14,13 @@ pub(crate) struct ConvertArgs {
     output: String,
     #[command(flatten)]
     reading: files::InputArgs,
-    /// Format of the output.
-    #[arg(long, value_name = "FORMAT", value_parser = files::parse_format)]
-    to: Option<Format>,
+    #[command(flatten)]
+    writing: files::OutputArgs,
 }
 
 /// Reads and writes; topology is not judged.
 pub(crate) fn run(args: &ConvertArgs, console: &Console) -> anyhow::Result<Exit> {
-    files::check_output(&args.output, args.to)?;
+    args.writing.check(&args.output, &args.reading, console)?;
     let data = if hexfill::is_named(&args.input) {
         files::load_problem(&args.input, &args.reading)?.data()
     } else {
@@ -31,7 +29,7 @@ pub(crate) fn run(args: &ConvertArgs, console: &Console) -> anyhow::Result<Exit>
     for note in &data.notes {
         console.note(note);
     }
-    files::write_data(&args.output, args.to, &data, console)?;
+    args.writing.write(&args.output, &data, console)?;
     if console.json && args.output != "-" {
         console.print_json(&serde_json::json!({
             "file": args.output,

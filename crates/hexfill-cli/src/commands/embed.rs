@@ -4,7 +4,6 @@ use crate::console::Console;
 use crate::exit::Exit;
 use crate::files;
 use anyhow::bail;
-use hexfill::io::Format;
 use hexfill::mesh::HexMesh;
 use hexfill::{Context, EmbedOptions, GeometryReport, Objective, StopReason};
 use serde::Serialize;
@@ -32,12 +31,10 @@ pub(crate) struct EmbedArgs {
     /// Write nothing unless det J > 0 is certified in every hex.
     #[arg(long)]
     require_valid: bool,
-    /// Format of the input.
-    #[arg(long, value_name = "FORMAT", value_parser = files::parse_format)]
-    from: Option<Format>,
-    /// Format of the output.
-    #[arg(long, value_name = "FORMAT", value_parser = files::parse_format)]
-    to: Option<Format>,
+    #[command(flatten)]
+    reading: files::InputArgs,
+    #[command(flatten)]
+    writing: files::OutputArgs,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, Debug, clap::ValueEnum)]
@@ -58,12 +55,12 @@ struct Output {
 
 /// Embeds, judges, writes; exit code 1 if some hex is not certified.
 pub(crate) fn run(args: &EmbedArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
-    files::check_output(&args.output, args.to)?;
-    let mut data = files::read_data(&args.mesh, &args.from.into())?;
+    args.writing.check(&args.output, &args.reading, console)?;
+    let mut data = files::read_data(&args.mesh, &args.reading)?;
     for note in std::mem::take(&mut data.notes) {
         console.note(note);
     }
-    files::check_mesh_output(&args.output, args.to, &data)?;
+    args.writing.check_mesh(&args.output, &data)?;
     if data.hexes.is_empty() {
         bail!("{} has no hexes; give a hex mesh (`hexfill fill` makes one from a surface)", args.mesh);
     }
@@ -88,7 +85,7 @@ pub(crate) fn run(args: &EmbedArgs, console: &Console, ctx: &Context<'_>) -> any
     if written {
         placed.flag(&mut data);
         data.points = placed.points().to_vec();
-        files::write_data(&args.output, args.to, &data, console)?;
+        args.writing.write(&args.output, &data, console)?;
         console.say(format!("written: {}", args.output));
     } else {
         console.say("nothing written: some hexes are not certified, and --require-valid was given");

@@ -7,7 +7,8 @@ use anyhow::bail;
 use hexfill::io::MeshData;
 use hexfill::mesh::QuadSurface;
 use hexfill::unstable::view::chord_drawing;
-use hexfill::{MeshInfo, Problem, SurfaceInfo, describe_mesh, describe_surface};
+use hexfill::{Estimate, FillOptions, MeshInfo, PlaceOptions, Problem, SurfaceInfo, describe_mesh, describe_surface};
+use serde::Serialize;
 use std::fmt::Write as _;
 use std::io::Write as _;
 
@@ -24,6 +25,15 @@ pub(crate) struct InfoArgs {
     /// Draw the chords of the surface (of a mesh: of its boundary), laid flat, as SVG. Components that are no spheres are left out.
     #[arg(long, value_name = "FILE")]
     svg: Option<String>,
+}
+
+/// What a surface is, and what filling it by default may take.
+#[derive(Serialize)]
+struct Output<'a> {
+    #[serde(flatten)]
+    info: &'a SurfaceInfo,
+    /// As `fill` says it; null if that takes some seconds at most, or no mesh exists.
+    estimate: Option<Estimate>,
 }
 
 /// Describes a surface or a mesh.
@@ -58,10 +68,15 @@ pub(crate) fn run(args: &InfoArgs, console: &Console) -> anyhow::Result<Exit> {
         console.note(note);
     }
     let info = describe_surface(problem.surface(), problem.points());
+    let estimate = hexfill::estimate(&problem, &FillOptions::default(), &PlaceOptions::default())
+        .filter(|_| info.existence.hex_mesh != "none");
     if console.json {
-        console.print_json(&info)?;
+        console.print_json(&Output { info: &info, estimate })?;
     } else {
         print_surface(&info, console)?;
+        if let Some(estimate) = estimate {
+            console.print(format!("estimate: {estimate}"))?;
+        }
     }
     if let Some(file) = &args.cycle {
         match &info.bounding_cycle {

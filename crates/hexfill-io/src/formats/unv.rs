@@ -8,6 +8,8 @@ use crate::data::{MeshData, TagOn};
 use crate::error::{ReadError, snippet};
 use crate::formats::msh::Numbers;
 use crate::groups::{Combination, Groups, NONE, name_of};
+use crate::orders::{UNV_HEX20, UNV_QUAD8};
+use crate::quadratic::{written_faces, written_hexes};
 use crate::source::Source;
 use crate::write::unquoted;
 use std::collections::BTreeMap;
@@ -320,17 +322,37 @@ pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
         writeln!(out, "{:>10}{:>10}{:>10}{:>10}\n{x:>25}{y:>25}{z:>25}", i + 1, 1, 1, 11)?;
     }
     writeln!(out, "    -1\n    -1\n  2412")?;
-    let faces = data.numbered_faces().map(|(_, face, _)| (if face.len() == 3 { 91 } else { 94 }, face));
-    let hexes = data.hexes.iter().map(|cell| (115, cell.as_slice()));
+    let faces = written_faces(data).map(|(face, _)| {
+        let descriptor = match face.len() {
+            3 => 91,
+            8 => 95,
+            _ => 94,
+        };
+        (descriptor, face)
+    });
+    let hexes = written_hexes(data).map(|(hex, _)| (if hex.len() == 20 { 116 } else { 115 }, hex));
     let tets = data.tets.iter().map(|cell| (111, cell.as_slice()));
     let wedges = data.wedges.iter().map(|cell| (112, cell.as_slice()));
     for (i, (descriptor, nodes)) in faces.chain(hexes).chain(tets).chain(wedges).enumerate() {
         writeln!(out, "{:>10}{descriptor:>10}{:>10}{:>10}{:>10}{:>10}", i + 1, 1, 1, 7, nodes.len())?;
-        nodes.iter().try_for_each(|&node| write!(out, "{:>10}", u64::from(node) + 1))?;
-        out.write_all(b"\n")?;
+        write_nodes(out, descriptor, nodes)?;
     }
     writeln!(out, "    -1")?;
     write_groups(out, data)
+}
+
+/// The nodes of an element in the order of I-DEAS, eight a line, counted from 1.
+fn write_nodes(out: &mut dyn Write, descriptor: i64, nodes: &[u32]) -> io::Result<()> {
+    let order: &[usize] = match descriptor {
+        95 => &UNV_QUAD8,
+        116 => &UNV_HEX20,
+        _ => &[0, 1, 2, 3, 4, 5, 6, 7][..nodes.len()],
+    };
+    for line in order.chunks(8) {
+        line.iter().try_for_each(|&i| write!(out, "{:>10}", u64::from(nodes[i]) + 1))?;
+        out.write_all(b"\n")?;
+    }
+    Ok(())
 }
 
 /// A group for each name of a tag; tags without one are called `tag_n`.

@@ -14,6 +14,17 @@ export interface Values {
   ramp: Rgb[];
 }
 
+/** Groups of quads, such as boundary conditions. */
+export interface Groups {
+  names: string[];
+  colours: Rgb[];
+  /** Facets that are in a group, rising, and the group of each. */
+  facets: Uint32Array;
+  of: Uint32Array;
+  /** The page opens with them. */
+  first: boolean;
+}
+
 export interface MeshData {
   title: string;
   vertices: number;
@@ -24,6 +35,7 @@ export interface MeshData {
   corners: Uint32Array;
   values: Values | null;
   shelling: Uint32Array | null;
+  groups: Groups | null;
   facts: [string, string][];
   problems: string[];
   colours: { surface: Rgb; inside: Rgb; unknown: Rgb; flagged: Rgb; quality: Rgb[]; growth: Rgb[] };
@@ -54,6 +66,13 @@ export function readData(): MeshData {
       ramp: raw.values.ramp,
     },
     shelling: raw.shelling === null ? null : new Uint32Array(bytes(raw.shelling).buffer),
+    groups: raw.groups && {
+      names: raw.groups.names,
+      colours: raw.groups.colours,
+      facets: new Uint32Array(bytes(raw.groups.facets).buffer),
+      of: new Uint32Array(bytes(raw.groups.of).buffer),
+      first: raw.groups.first,
+    },
     facts: raw.facts,
     problems: raw.problems,
     colours: raw.colours,

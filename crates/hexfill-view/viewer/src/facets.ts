@@ -4,7 +4,7 @@ import {
   BufferAttribute, BufferGeometry, DataTexture, DoubleSide, FloatType, GLSL3, Mesh, NearestFilter, RGBAFormat,
   ShaderMaterial, UnsignedByteType, Vector3,
 } from "three";
-import type { Rgb } from "./data";
+import type { Groups, Rgb } from "./data";
 import { facetVertices, type Topology } from "./topology";
 import { GLASS_FRAGMENT, HEX_FRAGMENT, HEX_VERTEX, PICK_FRAGMENT, SHEET_FRAGMENT, SHEET_VERTEX, TEXTURE_WIDTH } from "./shaders";
 
@@ -21,7 +21,7 @@ export class Facets {
   private readonly index: BufferAttribute;
 
   /** `points` are centred and scaled; hexes with `drawable[h] = 0` never appear. */
-  constructor(private readonly t: Topology, points: Float32Array, private readonly drawable: Uint8Array, surface: Rgb, inside: Rgb) {
+  constructor(private readonly t: Topology, points: Float32Array, private readonly drawable: Uint8Array, surface: Rgb, inside: Rgb, groups: Groups | null) {
     const n = 6 * t.hexes;
     const position = new Float32Array(15 * n);
     const bent = new Int8Array(20 * n);
@@ -31,6 +31,13 @@ export class Facets {
     const geometry = new BufferGeometry();
     geometry.setAttribute("position", new BufferAttribute(position, 3));
     geometry.setAttribute("bent", new BufferAttribute(bent, 4, true));
+    if (groups) {
+      const tint = new Uint8Array(20 * n);
+      groups.facets.forEach((f, i) => {
+        for (let k = 0; k < 5; k++) tint.set([...groups.colours[groups.of[i]], 255], 20 * f + 4 * k);
+      });
+      geometry.setAttribute("tint", new BufferAttribute(tint, 4, true));
+    }
     this.index = new BufferAttribute(new Uint32Array(FAN.length * n), 1);
     geometry.setIndex(this.index);
 
@@ -54,6 +61,7 @@ export class Facets {
       explode: { value: 0 },
       surfaceColour: { value: vector(surface) },
       insideColour: { value: vector(inside) },
+      byGroup: { value: false },
       lineColour: { value: new Vector3() },
       lineWidth: { value: 0.9 },
       hovered: { value: -1 },

@@ -34,6 +34,11 @@ function start(): void {
   new App(data, t, viewer, canvas);
 }
 
+interface Shared {
+  camera: number[];
+  change: Pick<ViewState, "normal" | "cut" | "flip" | "shrink" | "explode">;
+}
+
 class App {
   private state: ViewState;
   private readonly first: ViewState;
@@ -44,10 +49,13 @@ class App {
   private playing = 0;
   private played = 0;
   private hashTimer = 0;
+  /** What the page beside this one knows. */
+  private told = "";
 
   constructor(private readonly data: MeshData, private readonly t: Topology, private readonly viewer: Viewer, private readonly canvas: HTMLCanvasElement) {
     this.first = initialState();
     if (data.values) this.first.colour = "value";
+    if (data.groups?.first) this.first.colour = "group";
     this.state = structuredClone(this.first);
     this.panel = new Panel(data, t, {
       update: (change) => this.update(change),
@@ -59,10 +67,41 @@ class App {
       this.labels();
       window.clearTimeout(this.hashTimer);
       this.hashTimer = window.setTimeout(() => this.writeHash(), 300);
+      this.tellTwin();
     };
+    window.addEventListener("message", (e) => {
+      if (window.parent !== window && e.source === window.parent && e.data?.hexfill === "view") this.followTwin(e.data);
+    });
+    if (window.parent !== window) {
+      // In a frame there is no address to link to, and often little room.
+      byId("link").hidden = true;
+      document.body.classList.toggle("folded", window.innerWidth < 900);
+    }
     this.listen();
     this.readHash();
     this.systemDark.addEventListener("change", () => this.update({}));
+  }
+
+  /** What a page beside this one (`pair.html`) shares: the camera, and what is cut, shrunk and pulled apart. */
+  private shared(): Shared {
+    const { normal, cut, flip, shrink, explode } = this.state;
+    return { camera: this.viewer.cameraNumbers.map((x) => Number(x.toFixed(5))), change: { normal, cut, flip, shrink, explode } };
+  }
+
+  private tellTwin(): void {
+    if (window.parent === window) return;
+    const told = JSON.stringify(this.shared());
+    if (told === this.told) return;
+    this.told = told;
+    window.parent.postMessage({ hexfill: "view", ...this.shared() }, "*");
+  }
+
+  /** Shows what the page beside shows, and does not tell it back. */
+  private followTwin({ camera, change }: Shared): void {
+    this.told = JSON.stringify({ camera, change });
+    if (JSON.stringify(this.shared()) === this.told) return;
+    this.update(change);
+    this.viewer.cameraNumbers = camera;
   }
 
   private update(change: Partial<ViewState>): void {
@@ -84,6 +123,7 @@ class App {
     const limits = {
       hexes: this.data.hexes, layers: this.t.layers, sheets: this.t.sheets.length, chords: this.t.chords.length,
       columns: this.t.columnOf.reduce((a, b) => Math.max(a, b + 1), 0), values: this.data.values !== null,
+      groups: this.data.groups !== null,
     };
     const { state, camera } = fromHash(location.hash, this.first, limits);
     // Opens cut, where there is an inside to see; a link says itself what is cut, and Reset shows the whole.
@@ -230,7 +270,7 @@ class App {
       case "flip": return this.update({ flip: !s.flip });
       case "peelMore": return this.update({ peel: Math.min(t.layers - 1, s.peel + 1) });
       case "peelLess": return this.update({ peel: Math.max(0, s.peel - 1) });
-      case "colour": return this.update({ colour: next(["plain", ...(data.values ? ["value" as const] : []), "layer", "order"] as const, s.colour) });
+      case "colour": return this.update({ colour: next(["plain", ...(data.values ? ["value" as const] : []), ...(data.groups ? ["group" as const] : []), "layer", "order"] as const, s.colour) });
       case "boundary": return this.update({ boundary: next(["edges", "glass", "xray", "none"] as const, s.boundary) });
       case "singular": return this.update({ singular: next(["none", "inside", "all"] as const, s.singular) });
       case "sheetNext":
@@ -301,11 +341,17 @@ class App {
     const h = Math.floor(facet / 6);
     const other = this.t.glued[facet];
     const quad = facetVertices(this.t.corners, facet).map((v) => `v${v}`).join(" ");
-    const lines = [`h${h}${this.valueWords(h)}`, `${other < 0 ? "boundary quad" : `towards h${Math.floor(other / 6)}`}  ${quad}`];
+    const lines = [`h${h}${this.valueWords(h)}`, `${other < 0 ? "boundary quad" : `towards h${Math.floor(other / 6)}`}  ${quad}${this.groupWords(facet)}`];
     tip.textContent = lines.join("\n");
     const place = (at: number, size: number, room: number) => (at + 16 + size > room ? at - 12 - size : at + 16);
     tip.style.left = `${place(x, tip.offsetWidth, this.canvas.clientWidth)}px`;
     tip.style.top = `${place(y, tip.offsetHeight, this.canvas.clientHeight)}px`;
+  }
+
+  private groupWords(facet: number): string {
+    const groups = this.data.groups;
+    const at = groups ? groups.facets.indexOf(facet) : -1;
+    return at < 0 ? "" : `  ${groups!.names[groups!.of[at]]}`;
   }
 
   private valueWords(h: number): string {

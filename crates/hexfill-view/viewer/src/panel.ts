@@ -1,7 +1,7 @@
 // The panel: inputs that write the state, and texts that follow it.
 
 import { category, EXCESS, onScale } from "./colour";
-import type { MeshData } from "./data";
+import type { Groups, MeshData } from "./data";
 import { button, byId, count, digits, make } from "./dom";
 import { bar, entry, histogram, summarise, type Summary } from "./histogram";
 import { excess } from "./lines";
@@ -11,6 +11,8 @@ import { hexesShown } from "./viewer";
 
 /** Longest list of sheets or chords offered by name. */
 const MOST_OPTIONS = 2000;
+/** Most groups in the legend. */
+const MOST_GROUPS = 40;
 
 export interface Actions {
   update(change: Partial<ViewState>): void;
@@ -44,6 +46,7 @@ export class Panel {
     const colour = byId<HTMLSelectElement>("colour");
     colour.append(new Option("plain", "plain"));
     if (data.values) colour.append(new Option(data.values.name, "value"));
+    if (data.groups) colour.append(new Option("groups of quads", "group"));
     colour.append(new Option("layer from boundary", "layer"), new Option(data.shelling ? "shelling order" : "index order", "order"));
     const list = (select: HTMLSelectElement, name: string, lengths: string[]) => {
       select.append(new Option("none", ""), new Option(`all ${lengths.length}`, "all"));
@@ -190,6 +193,15 @@ export class Panel {
     return `${count(chord.length, "quad")}, ${crossings}; boundary of sheet s${chord.sheet}`;
   }
 
+  /** The groups with their numbers of facets; only the first ones by name. */
+  private groupLegend(groups: Groups): HTMLElement {
+    const sizes = groups.names.map(() => 0);
+    groups.of.forEach((g) => sizes[g]++);
+    const entries = groups.names.slice(0, MOST_GROUPS).map((name, g) => entry(groups.colours[g], `${name}: ${sizes[g]}`, true));
+    const more = groups.names.length - MOST_GROUPS;
+    return make("div", { class: "legend" }, make("b", {}, "Groups of quads"), make("div", {}, ...entries, more > 0 ? `and ${more} more` : ""));
+  }
+
   private legends(s: ViewState, shown: number): HTMLElement[] {
     const { data, t } = this;
     const legends: HTMLElement[] = [];
@@ -216,6 +228,8 @@ export class Panel {
       if (this.summary!.missing > 0) extra.push(entry(data.colours.unknown, `no value: ${this.summary!.missing}`, true));
       const ticks = [0, 0.5, 1].map((p) => digits(values.low + p * (values.high - values.low)));
       legends.push(bar(values.name, values.ramp, ticks, extra.length ? [line(...extra)] : []));
+    } else if (coloured && s.colour === "group" && data.groups) {
+      legends.push(this.groupLegend(data.groups));
     } else if (coloured && s.colour === "layer") {
       legends.push(bar("Layer from the boundary", data.colours.growth, t.layers > 1 ? ["0", String(t.layers - 1)] : ["", "0", ""]));
     } else if (coloured && s.colour === "order") {

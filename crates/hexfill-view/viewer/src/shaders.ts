@@ -39,6 +39,8 @@ export const HEX_VERTEX = /* glsl */ `
   precision highp float;
   precision highp int;
   in vec4 bent;
+  in vec4 tint;
+  uniform bool byGroup;
   uniform highp sampler2D paint;
   uniform vec3 surfaceColour;
   uniform vec3 insideColour;
@@ -54,7 +56,8 @@ export const HEX_VERTEX = /* glsl */ `
     uv2 = corner(gl_VertexID % 5);
     viewNormal = normalMatrix * bent.xyz;
     vec4 p = texelFetch(paint, ivec2(hex % ${TEXTURE_WIDTH}, hex / ${TEXTURE_WIDTH}), 0);
-    colour = p.a > 0.5 ? p.rgb : bent.w > 0.5 ? surfaceColour : insideColour;
+    if (byGroup && tint.a > 0.5) colour = tint.rgb;
+    else colour = p.a > 0.5 ? p.rgb : bent.w > 0.5 ? surfaceColour : insideColour;
     gl_Position = projectionMatrix * modelViewMatrix * vec4(placed(hex, position), 1.0);
   }
 `;

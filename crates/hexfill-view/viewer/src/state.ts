@@ -1,7 +1,7 @@
 // What is shown, and how a link carries it. Only what differs from the start is written; lengths are in units of the
 // mesh's radius round its middle, so a link survives a change of unit.
 
-export type ColourMode = "plain" | "value" | "layer" | "order";
+export type ColourMode = "plain" | "value" | "group" | "layer" | "order";
 
 /** Colours over the scale the page came with, or over the values that occur. */
 export type Scale = "fixed" | "range";
@@ -78,7 +78,7 @@ export function fromHash(hash: string, start: ViewState, limits: Limits): { stat
         break;
       case "shrink": if (within(0.1, 1)) state.shrink = x; break;
       case "explode": if (within(0, 2)) state.explode = x; break;
-      case "colour": state.colour = one("plain", "layer", "order", ...(limits.values ? ["value" as const] : [])) ?? start.colour; break;
+      case "colour": state.colour = one("plain", "layer", "order", ...(limits.values ? ["value" as const] : []), ...(limits.groups ? ["group" as const] : [])) ?? start.colour; break;
       case "scale": state.scale = one("fixed", "range") ?? start.scale; break;
       case "limit": if (limits.values && Number.isFinite(x)) state.limit = x; break;
       case "normal":
@@ -117,4 +117,5 @@ export interface Limits {
   chords: number;
   columns: number;
   values: boolean;
+  groups: boolean;
 }

@@ -66,7 +66,7 @@ export class Viewer {
     this.order.forEach((h, i) => (this.place[h] = i));
     this.visible = new Uint8Array(data.hexes);
 
-    this.facets = new Facets(t, this.points, this.drawable, data.colours.surface, data.colours.inside);
+    this.facets = new Facets(t, this.points, this.drawable, data.colours.surface, data.colours.inside, data.groups);
     const wire = boundaryWire(t, this.points);
     this.wire = wire.length > 0 ? segments(wire, { width: 1, opacity: 0.55 }) : null;
     this.scene.add(this.facets.solid, this.facets.glass);
@@ -118,6 +118,7 @@ export class Viewer {
     uniforms.shrink.value = state.shrink;
     uniforms.explode.value = state.explode;
     uniforms.picked.value = state.picked ?? -1;
+    uniforms.byGroup.value = state.colour === "group" && this.data.groups !== null;
     this.dark = dark;
     uniforms.lineColour.value.setScalar(dark ? 0.07 : 0.16);
     uniforms.opacity.value = dark ? 0.13 : 0.17;

@@ -2,7 +2,6 @@
 
 use crate::files;
 use anyhow::bail;
-use hexfill::io::Format;
 use hexfill::{
     Atlas, BoundaryLayers, CellChoice, Context, Effort, FillOptions, GivenTets, GrowOptions, InteriorFrom,
     PlaceOptions, Prefer, Strategy, TetgenTets,
@@ -21,9 +20,8 @@ pub(crate) struct FillArgs {
     pub(super) output: Option<String>,
     #[command(flatten)]
     pub(super) reading: files::InputArgs,
-    /// Format of the mesh.
-    #[arg(long, value_name = "FORMAT", value_parser = files::parse_format)]
-    pub(super) to: Option<Format>,
+    #[command(flatten)]
+    pub(super) writing: files::OutputArgs,
     /// Also write an HTML page that shows the mesh.
     #[arg(long, value_name = "FILE")]
     pub(super) view: Option<String>,

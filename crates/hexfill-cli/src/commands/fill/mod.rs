@@ -4,7 +4,7 @@ mod args;
 mod regions;
 mod said;
 
-use crate::commands::view::Shown;
+use crate::commands::view::{Shown, groups};
 use crate::console::Console;
 use crate::exit::Exit;
 use crate::files;
@@ -44,7 +44,7 @@ fn fill(args: &FillArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Result
         console.note(note);
     }
     if let Some(output) = &args.output {
-        files::check_mesh_output(output, args.to, &boundary_data(&problem))?;
+        args.writing.check_mesh(output, &boundary_data(&problem))?;
     }
     let own_log = args.growth_log.is_none().then(|| default_log(args)).flatten();
     let options = fill_options(args, own_log.clone(), ctx)?;
@@ -140,7 +140,7 @@ fn crossing_note(problem: &Problem) -> Option<String> {
 /// Refuses files that cannot be written, or would be written twice, before any work is done.
 fn check_files(args: &FillArgs, console: &Console) -> anyhow::Result<()> {
     if let Some(output) = &args.output {
-        files::check_output(output, args.to)?;
+        args.writing.check(output, &args.reading, console)?;
     }
     for file in args.view.iter().chain(&args.picture) {
         files::check_folder(file)?;
@@ -190,7 +190,7 @@ fn write_mesh(
         }
         filled.flag(&mut data);
         let path = named(output);
-        files::write_data(&path, args.to, &data, console)?;
+        args.writing.write(&path, &data, console)?;
         written.push(path);
     }
     if args.view.is_none() && args.picture.is_none() {
@@ -202,6 +202,7 @@ fn write_mesh(
         points: placed.points(),
         mesh: filled.mesh(),
         values: if args.no_embed { None } else { Shown::by_quality(placed.scaled_jacobians()) },
+        groups: groups(filled.mesh(), &problem.data(), false),
         facts: vec![
             ("made by".to_owned(), filled.route().words().to_owned()),
             ("geometry".to_owned(), placed.report().to_string()),

@@ -2,13 +2,14 @@
 
 use super::args::{FillArgs, fill_options, place_options};
 use super::said::{MeshOutput, say_end, say_mesh};
-use crate::commands::view::Shown;
+use crate::commands::view::{Shown, groups};
 use crate::console::Console;
 use crate::exit::Exit;
 use crate::files;
 use anyhow::bail;
 use hexfill::io::MeshData;
 use hexfill::mesh::HexMesh;
+use hexfill::unstable::check::{Judged, Level, Options, Rule, judge};
 use hexfill::{Context, FillReport, FilledRegions, Placed, Region, StopReason};
 use serde::Serialize;
 use std::time::Instant;
@@ -46,7 +47,7 @@ pub(super) fn run(
         console.note(note);
     }
     if let Some(output) = &args.output {
-        files::check_mesh_output(output, args.to, data)?;
+        args.writing.check_mesh(output, data)?;
     }
     let options = fill_options(args, None, ctx)?;
     let whole = hexfill::fill_regions(data, regions, &options, &place_options(args), ctx)?;
@@ -54,6 +55,10 @@ pub(super) fn run(
     if whole.given_invalid > 0 {
         notes.push(format!("{} hexes of the file itself have no certificate of det J > 0", whole.given_invalid));
         console.note(&notes[notes.len() - 1]);
+    }
+    if let Some(note) = pinched_note(&whole) {
+        console.note(&note);
+        notes.push(note);
     }
     let valid = args.no_embed || whole.is_certified();
     let files =
@@ -79,6 +84,21 @@ pub(super) fn run(
         say(&output, regions.len(), args, console);
     }
     Ok(exit)
+}
+
+/// A word on solids that touch in edges or vertices alone: each of them passes level 3, the whole does not.
+fn pinched_note(whole: &FilledRegions) -> Option<String> {
+    let judged = Judged::connectivity(whole.data.vertex_count(), &whole.data.hexes);
+    let options = Options::default().with_up_to(Level::L3).with_betti(false).with_quality(false);
+    let report = judge(&judged, &options, &Context::default());
+    let count = |rule: Rule| report.failures.iter().find(|f| f.rule == rule).map_or(0, |f| f.count);
+    let (edges, vertices) = (count(Rule::EdgePinched), count(Rule::VertexPinched));
+    (edges + vertices > 0).then(|| {
+        format!(
+            "solids touch in edges ({edges}) or vertices ({vertices}) alone, as the file has it: there the whole is no manifold; give each solid points \
+             of its own to part them"
+        )
+    })
 }
 
 fn say(output: &Output, n_regions: usize, args: &FillArgs, console: &Console) {
@@ -107,7 +127,7 @@ fn say(output: &Output, n_regions: usize, args: &FillArgs, console: &Console) {
 fn write(args: &FillArgs, whole: &FilledRegions, console: &Console) -> anyhow::Result<Vec<String>> {
     let mut written = Vec::new();
     if let Some(output) = &args.output {
-        files::write_data(output, args.to, &whole.data, console)?;
+        args.writing.write(output, &whole.data, console)?;
         written.push(output.clone());
     }
     if args.view.is_none() && args.picture.is_none() {
@@ -121,6 +141,7 @@ fn write(args: &FillArgs, whole: &FilledRegions, console: &Console) -> anyhow::R
         points: &whole.data.points,
         mesh: &mesh,
         values: quality.filter(|values| values.iter().all(|x| x.is_finite())).and_then(Shown::by_quality),
+        groups: groups(&mesh, &whole.data, false),
         facts: vec![("regions".to_owned(), whole.fills.len().to_string())],
     };
     written.extend(shown.write(args.view.clone(), args.picture.clone())?);

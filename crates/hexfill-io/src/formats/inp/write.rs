@@ -4,6 +4,7 @@ use super::BOUNDARY;
 use crate::data::{MeshData, TagOn};
 use crate::groups::name_of;
 use crate::orders::ABAQUS_FACES;
+use crate::quadratic::{written_faces, written_hexes};
 use crate::write::write_point;
 use rustc_hash::FxHashMap;
 use std::collections::BTreeMap;
@@ -20,8 +21,9 @@ pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
     let sides = sides_of_hexes(data);
     let shells: Vec<(&[u32], i64)> = data
         .numbered_faces()
-        .filter(|(quad, ..)| quad.is_none_or(|q| sides[q].is_none()))
-        .map(|(_, face, tag)| (face, tag))
+        .zip(written_faces(data))
+        .filter(|((quad, ..), _)| quad.is_none_or(|q| sides[q].is_none()))
+        .map(|(_, face)| face)
         .collect();
     write_elements(out, data, &shells)?;
     // Each set once: meshio forgets all but the last part of a set that is spread over several blocks.
@@ -45,8 +47,15 @@ pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
 
 /// Shells, hexes and other cells, numbered from 1 in this order.
 fn write_elements(out: &mut dyn Write, data: &MeshData, shells: &[(&[u32], i64)]) -> io::Result<()> {
-    let shells = shells.iter().map(|(f, _)| (if f.len() == 3 { "S3" } else { "S4" }, *f));
-    let hexes = data.hexes.iter().map(|c| ("C3D8", c.as_slice()));
+    let shells = shells.iter().map(|(face, _)| {
+        let element_type = match face.len() {
+            3 => "S3",
+            8 => "S8R",
+            _ => "S4",
+        };
+        (element_type, *face)
+    });
+    let hexes = written_hexes(data).map(|(hex, _)| (if hex.len() == 20 { "C3D20" } else { "C3D8" }, hex));
     let tets = data.tets.iter().map(|c| ("C3D4", c.as_slice()));
     let wedges = data.wedges.iter().map(|c| ("C3D6", c.as_slice()));
     let pyramids = data.pyramids.iter().map(|c| ("C3D5", c.as_slice()));
@@ -57,8 +66,10 @@ fn write_elements(out: &mut dyn Write, data: &MeshData, shells: &[(&[u32], i64)]
             writeln!(out, "*ELEMENT, TYPE={element_type}")?;
         }
         write!(out, "{}", i + 1)?;
-        for &node in nodes {
-            write!(out, ", {}", u64::from(node) + 1)?;
+        for (k, &node) in nodes.iter().enumerate() {
+            // At most 16 numbers a line.
+            let separator = if k == 15 { ",\n" } else { ", " };
+            write!(out, "{separator}{}", u64::from(node) + 1)?;
         }
         out.write_all(b"\n")?;
     }

@@ -4,8 +4,12 @@ use crate::assembly::{Assembly, Slot, Values};
 use crate::data::MeshData;
 use crate::error::ReadError;
 use crate::groups::{Combination, Groups, NONE};
+use crate::orders::{GMSH_HEX20, reorder};
+use crate::quadratic::{written_faces, written_hexes};
 use crate::source::{Source, Span};
+use crate::write::write_indices;
 use rustc_hash::{FxHashMap, FxHashSet};
+use std::io::{self, Write};
 
 /// Numbers of nodes of Gmsh's element types 1 to 31 (0: no such type here).
 const NODES: [usize; 32] =
@@ -17,6 +21,8 @@ pub(crate) const TET: i64 = 4;
 pub(crate) const HEX: i64 = 5;
 pub(crate) const WEDGE: i64 = 6;
 pub(crate) const PYRAMID: i64 = 7;
+const QUAD8: i64 = 16;
+const HEX20: i64 = 17;
 
 /// Name of the physical group of what has no tag, where all must have one.
 pub(crate) const UNTAGGED: &str = "untagged";
@@ -31,7 +37,7 @@ pub(crate) fn nodes_of(element_type: i64) -> Option<usize> {
 }
 
 /// The straight type of an element type of higher order, whose corners come first, and their number.
-fn straight(element_type: i64) -> (i64, usize) {
+pub(crate) fn straight(element_type: i64) -> (i64, usize) {
     match element_type {
         9 | 20 | 21 | 22 | 23 | 24 | 25 => (TRIANGLE, 3),
         10 | 16 | 36 | 37 | 47 => (QUAD, 4),
@@ -427,12 +433,27 @@ impl Reader<'_> {
 
 /// Elements in the order they are written: type, nodes, tag; faces, hexes, then the others.
 pub(crate) fn elements(data: &MeshData) -> impl Iterator<Item = (i64, &[u32], i64)> {
-    let faces = data.tagged_faces().map(|(f, tag)| (if f.len() == 3 { TRIANGLE } else { QUAD }, f, tag));
-    let hexes = data.hexes.iter().enumerate().map(|(h, hex)| (HEX, hex.as_slice(), data.hex_tag(h)));
+    let faces = written_faces(data).map(|(face, tag)| {
+        let element_type = match face.len() {
+            3 => TRIANGLE,
+            8 => QUAD8,
+            _ => QUAD,
+        };
+        (element_type, face, tag)
+    });
+    let hexes = written_hexes(data).map(|(hex, tag)| (if hex.len() == 20 { HEX20 } else { HEX }, hex, tag));
     let tets = data.tets.iter().map(|c| (TET, c.as_slice(), 0));
     let wedges = data.wedges.iter().map(|c| (WEDGE, c.as_slice(), 0));
     let pyramids = data.pyramids.iter().map(|c| (PYRAMID, c.as_slice(), 0));
     faces.chain(hexes).chain(tets).chain(wedges).chain(pyramids)
+}
+
+/// Writes the nodes of an element in the order of Gmsh, counted from 1.
+pub(crate) fn write_nodes(out: &mut dyn Write, nodes: &[u32]) -> io::Result<()> {
+    match <[u32; 20]>::try_from(nodes) {
+        Ok(nodes) => write_indices(out, &reorder(nodes, GMSH_HEX20), 1),
+        Err(_) => write_indices(out, nodes, 1),
+    }
 }
 
 /// Dimension of an element type (0 for those that are passed over).

@@ -1,6 +1,6 @@
 //! Data sections of both versions, written.
 
-use super::common::{HEX, QUAD, elements};
+use super::common::{HEX, QUAD, elements, straight};
 use crate::arrays::{self, CellColumn, component};
 use crate::data::MeshData;
 use crate::write::{Real, unquoted};
@@ -93,6 +93,7 @@ fn write_on_nodes_of_elements(
     let mut values: Vec<_> = columns.iter().map(|c| c.all()).collect();
     for (i, (element_type, nodes, _)) in elements(data).enumerate() {
         let value: Vec<Real> = values.iter_mut().map(|v| Real(v.next().unwrap_or(f64::NAN))).collect();
+        let element_type = straight(element_type).0;
         if !(element_type == QUAD && on.0 || element_type == HEX && on.1) {
             continue;
         }

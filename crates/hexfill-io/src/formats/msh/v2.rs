@@ -1,13 +1,13 @@
 //! MSH 2.2: nodes with numbers, elements with numbers and two tags (physical group, elementary entity).
 
-use super::common::{Reader, dimension, elements, nodes_of};
+use super::common::{Reader, dimension, elements, nodes_of, write_nodes};
 use super::physical::Physical;
 use super::sections::{Layout, write_data};
 use crate::data::MeshData;
 use crate::error::ReadError;
 use crate::groups::Combination;
 use crate::source::reserve;
-use crate::write::{write_indices, write_point};
+use crate::write::write_point;
 use std::collections::BTreeMap;
 use std::fmt::Display;
 use std::io::{self, Write};
@@ -173,7 +173,7 @@ pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
     for (i, (element_type, nodes, tag)) in elements(data).enumerate() {
         let entity = entities[&(dimension(element_type), tag)];
         write!(out, "{} {element_type} 2 {tag} {entity}", i + 1)?;
-        write_indices(out, nodes, 1)?;
+        write_nodes(out, nodes)?;
         out.write_all(b"\n")?;
     }
     writeln!(out, "$EndElements")?;

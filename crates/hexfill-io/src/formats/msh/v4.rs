@@ -1,12 +1,12 @@
 //! MSH 4.1: nodes and elements in blocks, each block on an entity; entities carry the physical groups.
 
-use super::common::{Reader, dimension, elements, nodes_of};
+use super::common::{Reader, dimension, elements, nodes_of, write_nodes};
 use super::physical::Physical;
 use super::sections::{Layout, write_data};
 use crate::data::MeshData;
 use crate::error::ReadError;
 use crate::source::reserve;
-use crate::write::{Real, write_indices, write_point};
+use crate::write::{Real, write_point};
 use rustc_hash::FxHashMap;
 use std::collections::BTreeMap;
 use std::io::{self, Write};
@@ -283,7 +283,7 @@ pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
         writeln!(out, "{dim} {} {element_type} {count}", entities[&(dim, tag)])?;
         for (i, (_, nodes, _)) in all.by_ref().take(count) {
             write!(out, "{}", i + 1)?;
-            write_indices(out, nodes, 1)?;
+            write_nodes(out, nodes)?;
             out.write_all(b"\n")?;
         }
     }

@@ -3,6 +3,8 @@
 use super::PROPERTY_LINE;
 use super::card::parse_real;
 use crate::data::{MeshData, TagOn};
+use crate::orders::{NASTRAN_HEX20, reorder};
+use crate::quadratic::{written_faces, written_hexes};
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Write};
 
@@ -82,18 +84,27 @@ pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
         number += 1;
         write!(out, "{name:<8}{number:>8}{:>8}", properties.0[&(on, tag)])?;
         for (i, &node) in nodes.iter().enumerate() {
-            if i == 6 {
+            // Six nodes on the first line, eight on those that follow.
+            if i == 6 || i == 14 {
                 out.write_all(b"+\n+       ")?;
             }
             write!(out, "{:>8}", u64::from(node) + 1)?;
         }
         out.write_all(b"\n")
     };
-    for (_, face, tag) in data.numbered_faces() {
-        element(if face.len() == 3 { "CTRIA3" } else { "CQUAD4" }, TagOn::Faces, tag, face)?;
+    for (face, tag) in written_faces(data) {
+        let name = match face.len() {
+            3 => "CTRIA3",
+            8 => "CQUAD8",
+            _ => "CQUAD4",
+        };
+        element(name, TagOn::Faces, tag, face)?;
     }
-    for (h, hex) in data.hexes.iter().enumerate() {
-        element("CHEXA", TagOn::Cells, data.hex_tag(h), hex)?;
+    for (hex, tag) in written_hexes(data) {
+        match <[u32; 20]>::try_from(hex) {
+            Ok(hex) => element("CHEXA", TagOn::Cells, tag, &reorder(hex, NASTRAN_HEX20))?,
+            Err(_) => element("CHEXA", TagOn::Cells, tag, hex)?,
+        }
     }
     for tet in &data.tets {
         element("CTETRA", TagOn::Cells, 0, tet)?;

@@ -3,6 +3,7 @@
 use crate::assembly::{Assembly, Slot};
 use crate::data::MeshData;
 use crate::orders::{PIXEL, VOXEL, reorder};
+use crate::quadratic::{written_faces, written_hexes};
 
 pub(crate) const TRIANGLE: u8 = 5;
 pub(crate) const POLYGON: u8 = 7;
@@ -13,6 +14,8 @@ pub(crate) const VOXEL_TYPE: u8 = 11;
 pub(crate) const HEXAHEDRON: u8 = 12;
 pub(crate) const WEDGE: u8 = 13;
 pub(crate) const PYRAMID: u8 = 14;
+pub(crate) const QUADRATIC_QUAD: u8 = 23;
+pub(crate) const QUADRATIC_HEXAHEDRON: u8 = 25;
 
 /// Number of nodes a cell type must have; `None` if it may vary or the type is passed over.
 fn nodes_of(cell_type: u8) -> Option<usize> {
@@ -94,15 +97,17 @@ fn title(cell_type: u8) -> String {
 
 /// All cells of a mesh with their types and tags, in the order they are written: faces, hexes, then the others.
 pub(crate) fn all(data: &MeshData) -> impl Iterator<Item = (u8, &[u32], i64)> {
-    let faces = data.tagged_faces().map(|(face, tag)| {
+    let faces = written_faces(data).map(|(face, tag)| {
         let cell_type = match face.len() {
             3 => TRIANGLE,
             4 => QUAD,
+            _ if data.quadratic.is_some() => QUADRATIC_QUAD,
             _ => POLYGON,
         };
         (cell_type, face, tag)
     });
-    let hexes = data.hexes.iter().enumerate().map(|(h, hex)| (HEXAHEDRON, hex.as_slice(), data.hex_tag(h)));
+    let hex_type = if data.quadratic.is_some() { QUADRATIC_HEXAHEDRON } else { HEXAHEDRON };
+    let hexes = written_hexes(data).map(move |(hex, tag)| (hex_type, hex, tag));
     let tets = data.tets.iter().map(|c| (TETRA, c.as_slice(), 0));
     let wedges = data.wedges.iter().map(|c| (WEDGE, c.as_slice(), 0));
     let pyramids = data.pyramids.iter().map(|c| (PYRAMID, c.as_slice(), 0));
