@@ -158,8 +158,8 @@ mod tests {
         assert_eq!(points[..open.n_surface], open.points[..open.n_surface]);
         for hex in whole.hexes_raw() {
             let at = |k: usize| points[hex[k] as usize];
-            for k in 0..8 {
-                let steps = CORNER_NEIGHBOURS[k].map(|j| (0..3).map(|x| (at(j)[x] - at(k)[x]).abs()).sum::<f64>());
+            for (k, neighbours) in CORNER_NEIGHBOURS.iter().enumerate() {
+                let steps = neighbours.map(|j| (0..3).map(|x| (at(j)[x] - at(k)[x]).abs()).sum::<f64>());
                 assert_eq!(steps, [1.0; 3]);
             }
         }
