@@ -21,12 +21,13 @@ const BATCH: usize = 256;
 const BETTER_THAN_NONE: u32 = 72;
 
 /// How hard to try, one after the other, while a target has too many hexes or none.
-const EFFORTS: [Breadth; 5] = [
+const EFFORTS: [Breadth; 6] = [
     Breadth { depth: 20, beam: 100, first: true },
     Breadth { depth: 40, beam: 300, first: true },
     Breadth { depth: 4, beam: 300, first: false },
     Breadth { depth: 6, beam: 600, first: false },
     Breadth { depth: 12, beam: 3_000, first: false },
+    Breadth { depth: 20, beam: 20_000, first: false },
 ];
 
 /// What to complete.
