@@ -6,7 +6,7 @@
 
 use crate::error::WriteError;
 use crate::format::Format;
-use crate::quadratic::Quadratic;
+use crate::quadratic_cells::Quadratic;
 use hexfill_mesh::{HexMesh, HexMeshError, QuadSurface, SurfaceError};
 use std::collections::BTreeMap;
 
@@ -415,7 +415,8 @@ impl MeshData {
                 return Err(WriteError::Inconsistent { what: format!("{name} has {given} values instead of {due}") });
             }
         }
-        if self.quadratic.as_ref().is_some_and(|q| !q.fits(self)) {
+        let is_alone = self.other_faces.is_empty() && self.cell_count() == self.hexes.len();
+        if self.quadratic.as_ref().is_some_and(|q| !is_alone || !q.fits(&self.quads, &self.hexes, n)) {
             let what = "`quadratic` is not of these quads and hexes".to_owned();
             return Err(WriteError::Inconsistent { what });
         }

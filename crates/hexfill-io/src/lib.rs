@@ -34,6 +34,7 @@ mod limits;
 mod losses;
 pub mod orders;
 mod quadratic;
+mod quadratic_cells;
 mod save;
 mod source;
 mod weld;
@@ -42,7 +43,7 @@ mod write;
 pub use data::{MeshData, OtherFace, TagName, TagOn};
 pub use error::{Place, Position, QuadraticError, ReadError, WriteError};
 pub use format::{Compression, Format, FormatError};
-pub use quadratic::Quadratic;
+pub use quadratic_cells::Quadratic;
 pub use save::{Encoding, check_path, write_path, write_path_with, write_to, write_to_with};
 pub use weld::{Weld, closing_tolerance, weld};
 

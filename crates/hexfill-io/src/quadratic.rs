@@ -7,15 +7,8 @@
 use crate::data::MeshData;
 use crate::error::QuadraticError;
 use crate::orders::{HEX_EDGES, QUAD_EDGES};
+use crate::quadratic_cells::Quadratic;
 use rustc_hash::FxHashMap;
-
-/// The faces and hexes of a [`MeshData`] with the nodes of their edges, in the orders of VTK_QUADRATIC_QUAD and VTK_QUADRATIC_HEXAHEDRON:
-/// corners as in `quads` and `hexes`, then middles in the order of [`QUAD_EDGES`] and [`HEX_EDGES`].
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Quadratic {
-    pub(crate) quads: Vec<[u32; 8]>,
-    pub(crate) hexes: Vec<[u32; 20]>,
-}
 
 impl MeshData {
     /// The same with cells of second order on straight edges, to be written: each edge gets one node, at the mean of its ends, after all points.
@@ -73,29 +66,6 @@ impl MeshData {
         }
         self.quadratic = Some(Quadratic { quads, hexes });
         Ok(self)
-    }
-}
-
-impl Quadratic {
-    /// The faces alone.
-    pub(crate) fn without_hexes(self) -> Self {
-        Self { hexes: Vec::new(), ..self }
-    }
-
-    pub(crate) fn nodes_mut(&mut self) -> impl Iterator<Item = &mut u32> {
-        self.quads.iter_mut().flatten().chain(self.hexes.iter_mut().flatten())
-    }
-
-    /// Whether these are the cells of `data`, which has no others, and its points.
-    pub(crate) fn fits(&self, data: &MeshData) -> bool {
-        let n = data.points.len();
-        let exist = |nodes: &[u32]| nodes.iter().all(|&v| (v as usize) < n);
-        let alone = data.other_faces.is_empty() && data.cell_count() == data.hexes.len();
-        let quads = self.quads.len() == data.quads.len()
-            && self.quads.iter().zip(&data.quads).all(|(nodes, quad)| nodes[..4] == quad[..] && exist(nodes));
-        let hexes = self.hexes.len() == data.hexes.len()
-            && self.hexes.iter().zip(&data.hexes).all(|(nodes, hex)| nodes[..8] == hex[..] && exist(nodes));
-        alone && quads && hexes
     }
 }
 
