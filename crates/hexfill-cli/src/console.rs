@@ -55,6 +55,11 @@ impl ProgressState {
     }
 }
 
+/// "1 hex", "2 hexes".
+pub(crate) fn hexes(n: usize) -> String {
+    format!("{n} hex{}", if n == 1 { "" } else { "es" })
+}
+
 /// "12 s", "3 min", "2 h".
 fn duration(seconds: f64) -> String {
     match seconds {

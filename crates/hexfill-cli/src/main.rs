@@ -154,7 +154,7 @@ fn run() -> ExitCode {
         Command::Simplify(args) => commands::simplify::run(args, &console, &ctx),
         Command::Convert(args) => commands::convert::run(args, &console),
         Command::View(args) => commands::view::run(args, &console),
-        Command::Catalog(args) => commands::catalog::run(args, &console),
+        Command::Catalog(args) => commands::catalog::run(args, &console, &ctx),
         Command::Atlas(args) => commands::atlas::run(args, &console, &ctx),
         Command::Enumerate(args) => commands::enumerate::run(args, rayon::current_num_threads(), &console, &ctx),
         Command::Search(args) => commands::search::run(args, rayon::current_num_threads(), &console, &ctx),

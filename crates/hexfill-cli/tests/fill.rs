@@ -60,6 +60,24 @@ fn shipped_meshes_are_what_the_catalogue_says() {
 }
 
 #[test]
+fn stored_meshes_are_written_with_positions_where_the_format_has_them() {
+    let dir = tempfile::tempdir().unwrap();
+    for (name, code, level) in [
+        (":refinement-9-1", 0, 4),
+        (":refinement-16-4", 0, 4),
+        (":carbonera-fig10", 0, 2),
+        (":octagonal-spindle", 1, 2),
+    ] {
+        let (found, _, err) = hexfill(dir.path(), &["catalog", "show", name, "--mesh", "best.vtu"]);
+        assert_eq!(found, code, "{name}: {err}");
+        let report = judged(dir.path(), "best.vtu", name);
+        assert!(passed(&report, level), "{name}: {report}");
+    }
+    let (code, _, err) = hexfill(dir.path(), &["catalog", "show", ":geode", "--mesh", "nowhere/best.vtu"]);
+    assert!(code == 2 && err.contains("does not exist") && !err.contains("certified"), "{err}");
+}
+
+#[test]
 fn the_surface_comes_back_bit_for_bit() {
     let dir = tempfile::tempdir().unwrap();
     let points = "v -0.0 0 0\nv 1e-300 0.1 0.30000000000000004\nv 1 1 0\nv 0 1 5e-324\nv 0 0 1\nv 1 0 1\nv 1 1 1.7976931348623157e300\nv 0 1 1\nv 9 9 9\n";
