@@ -69,7 +69,7 @@ pub(crate) fn run(args: &CatalogArgs, console: &Console, ctx: &Context<'_>) -> a
         CatalogCommand::List => {
             let all = catalog::entries().iter().map(describe).collect::<anyhow::Result<Vec<_>>>()?;
             if console.json {
-                console.print_json(&all)?;
+                console.print_json(&serde_json::json!({ "problems": all }))?;
             } else {
                 for entry in all {
                     console.print(format!("{:<22} {:>3} quads  {}", entry.name, entry.quads, entry.best))?;
