@@ -2,6 +2,8 @@
 //!
 //! The hash covers the stored numbers: positions as bits, hexes and surface quads as indices, in the order given. So the
 //! certificate is for the numbers whatever the file format, and for no others.
+//!
+//! Source: ours.
 
 use crate::input::{Judged, Options};
 use crate::judge::judge;

@@ -1,3 +1,5 @@
+//! Source: ours: the rules are those of the book's page `definitions`, "The validity ladder".
+//!
 //! [`judge`]: every level in turn, and the report.
 
 use crate::geometry::overlap::overlap;

@@ -1,3 +1,5 @@
+//! Source: ours.
+//!
 //! [`examine`]: everything about a surface at once, each finding with its remedy.
 
 use crate::crossing::crossings;

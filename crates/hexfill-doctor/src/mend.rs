@@ -1,3 +1,5 @@
+//! Source: ours.
+//!
 //! [`mend`]: the faults that have one smallest remedy are mended; what stays is for the findings to say.
 
 use crate::cut::Cutter;

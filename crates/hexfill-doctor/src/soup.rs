@@ -1,3 +1,5 @@
+//! Source: ours.
+//!
 //! [`Soup`]: points and faces as a file holds them, nothing being known of how they fit.
 
 use hexfill_mesh::{QuadSurface, SurfaceError};

@@ -6,6 +6,8 @@
 //!
 //! The *key* (Weill) is the multiset of pairs of the lengths of the two chords through each quad, where a chord's
 //! length is the number of distinct quads it passes.
+//!
+//! Source: ours; keys: Weill.
 
 use crate::complex::{Complex, FREE, MAX_CUBES};
 use crate::frames::TURN;

@@ -3,6 +3,8 @@
 //! The tree of canonical augmentations is cut at one level into *nodes*, whose order is fixed by the parameters alone; chunk k
 //! of K has the nodes whose number is k modulo K, with all that is below them. So the chunks of any K partition the
 //! classes, and threads, job arrays and MPI ranks are drivers of one function, [`Plan::run`].
+//!
+//! Source: Brinkmann, McKay 2007 (`res/mod`); sums that add up are ours.
 
 use crate::augment::{Members, Walk, members};
 use crate::canonical::{Code, canonical};

@@ -4,6 +4,8 @@
 //! hashes) and a code for each class that is extended further. Threads share the set; which of them meets a class first
 //! does not matter, since only its canonical code and invariants are used. Codes are sorted at the end of a
 //! level, so that the result does not depend on the threads.
+//!
+//! Source: Weill, who goes level by level too.
 
 use crate::canonical::{Code, canonical};
 use crate::complex::Complex;

@@ -8,6 +8,8 @@
 //! other five facets are free or glued to a later quad by one of four maps (eight with non-orientable gluings).
 //! Vertices that can never be merged (they share a cube, or their cubes meet in a way that would become improper) are
 //! tabulated first, which settles most trials with two bit tests.
+//!
+//! Source: ours.
 
 use crate::boundary::{Boundary, MAX_QUADS};
 use crate::complex::{Complex, FREE, MAX_CUBES, MAX_VERTICES, reach, set_of};

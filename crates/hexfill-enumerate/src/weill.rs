@@ -9,6 +9,8 @@
 //!
 //! The rule is not hereditary (a cube may be removable without the rest being reachable).
 //! Each new cube is made once: its glued facet on the lowest quad is its bottom, seen in one fixed rotation.
+//!
+//! Source: Weill; the exact rule was found by experiment against his table (book, page `enumerate`, "Two rules").
 
 use crate::boundary::Boundary;
 use crate::complex::{Complex, FREE, MAX_CUBES, MAX_VERTICES, set_of, side_set_of};

@@ -4,6 +4,8 @@
 //! b from some starts, then turns one free edge at a time to its best direction (each is a program with a closed form, see
 //! [`best_direction`]). What is returned is attained; that nothing is better is not claimed.
 //! (`hexfill-embed` has the branch and bound that proves it.)
+//!
+//! Source: ours; with one free edge a turn is Wolfe 1976.
 
 use crate::direction::best_direction;
 use crate::vector::{Vector, add, add_scaled, cross, det, dot, norm, scale, unit};

@@ -1,3 +1,5 @@
+//! Source: ours.
+//!
 //! [`Quadratic`]: cells of second order, beside those of a mesh (see `quadratic.rs`).
 
 /// The faces and hexes of a mesh with the nodes of their edges, in the orders of VTK_QUADRATIC_QUAD and VTK_QUADRATIC_HEXAHEDRON:

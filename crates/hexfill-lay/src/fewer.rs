@@ -1,3 +1,5 @@
+//! Source: Borden et al. 2002 (a sheet taken out); trying it on positions and keeping what stays valid is ours.
+//!
 //! [`without_sheets`]: what can go again, as long as the rest has valid positions.
 
 use crate::laid_mesh::LaidMesh;

@@ -1,3 +1,5 @@
+//! Source: ours.
+//!
 //! [`Frame`]: where the work is done.
 
 use hexfill_geometry::{Vector, norm, sub};

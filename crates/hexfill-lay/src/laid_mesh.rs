@@ -1,3 +1,5 @@
+//! Source: ours.
+//!
 //! [`LaidMesh`]: what laying makes.
 
 use hexfill_geometry::Vector;

@@ -1,3 +1,5 @@
+//! Source: ours (book, page `shelling`, "Laying").
+//!
 //! [`lay`]: the verb.
 
 use crate::fewer::without_sheets;

@@ -1,3 +1,5 @@
+//! Source: ours; why room can be made: Barnette 1970, and the pillows of Mitchell, Tautges 1995.
+//!
 //! [`Laying`]: the hexes laid so far, their positions, and the front of what is open.
 
 use crate::open_mesh::without;

@@ -1,3 +1,5 @@
+//! Source: ours.
+//!
 //! [`OpenMesh`]: the surface with the hexes that a sweep could glue, all at valid positions, and the void they leave.
 
 use hexfill_embed::{Open, OpenEffort, open_start, untangle_near};

@@ -1,3 +1,5 @@
+//! Source: ours.
+//!
 //! [`Patch`]: what lies round the void, where hexes are laid; the rest of the mesh need not be looked at.
 
 use crate::laying::Laying;

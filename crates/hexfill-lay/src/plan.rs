@@ -1,3 +1,5 @@
+//! Source: ours.
+//!
 //! [`Plan`]: hexes that fill a void, by topology alone.
 
 use hexfill_mesh::{Context, QuadSurface};

@@ -1,3 +1,5 @@
+//! Source: ours; what may be glued so that the rest stays a ball is Müller-Hannemann 2001's shelling from outside, one hex at a time.
+//!
 //! [`VoidFront`]: what can be laid on the front of the void next.
 
 use hexfill_mesh::cube::{EDGES, FACETS};

@@ -2,6 +2,8 @@
 //!
 //! A quad sphere always has one (all faces are even); on other surfaces an odd cycle may exist, and no hex mesh does if an odd
 //! cycle bounds a surface inside the domain (Erickson 2014).
+//!
+//! Source: Erickson 2014, section 4 (why odd cycles matter).
 
 use crate::ids::VertexId;
 use crate::surface::QuadSurface;

@@ -5,6 +5,8 @@
 //! 0 for a vertex met for the first time (it gets the next label) or (next label - its label); the first of the four is raised by 1 to leave room
 //! for the boundary. The new hex's frame is the old one pushed through the facet. As vertices are labelled, identifications that no facet causes count too.
 //! Flags are restricted to a rare kind and to one for each orbit, as in `surface_code.rs`.
+//!
+//! Source: ours, after Brinkmann, McKay 2007 for surfaces.
 
 use crate::cube::{FACET_DIAGONALS, FACETS, POSITIONS, corner_at, symmetries};
 use crate::hexmesh::{Facet, HexMesh};

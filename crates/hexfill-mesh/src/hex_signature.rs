@@ -4,6 +4,8 @@
 //! `.`. Two meshes have the same signature exactly if one becomes the other by renumbering vertices and hexes and choosing other frames for the hexes, reflections included
 //! (each part by itself). The oriented variant `H1+:` takes rotations only and so tells mirror images apart. Vertices no hex uses do not count. Parts that
 //! share vertices without being connected through quads have no signature: the code of a part does not say how parts hang together.
+//!
+//! Source: ours; a name that is its object's code is Regina's idea of signatures (Burton 2011).
 
 use crate::components::{disagreement, facet_components};
 use crate::cube::FACETS;

@@ -2,6 +2,8 @@
 //!
 //! A value satisfies rule R1: every hex has 8 distinct vertices in range and every facet belongs to one hex
 //! (boundary) or two. Proper intersection, links and the prescribed boundary are for `hexfill-check` to judge.
+//!
+//! Source: ours.
 
 use crate::cube::{EDGES, FACETS};
 use crate::ids::{HexId, Offenders, VertexId};

@@ -2,7 +2,9 @@
 //!
 //! A sheet is a class of edges under "opposite in a quad". It crosses a hex once for each of the hex's three directions whose four edges are in the
 //! class, so it may cross itself in a hex (two directions) and even have a triple point there (three). Its boundary curves are chords of the mesh's
-//! boundary. Source: Folwell, Mitchell, "Reliable whisker weaving via curve contraction" (1999); Thurston 1993; Mitchell 1996.
+//! boundary.
+//!
+//! Source: Thurston 1993; Mitchell 1996; Folwell, Mitchell 1999.
 
 use crate::chords::Chord;
 use crate::components::root;

@@ -3,6 +3,8 @@
 //! A signature is `Q1:` and the smallest breadth-first code of each component (file `surface_code.rs`), components in ascending order, joined by
 //! `.`. Two surfaces have the same signature exactly if one becomes the other by renumbering vertices and quads and, perhaps, turning all of it inside out
 //! (a mirror image). Vertices that no quad uses do not count. Time near linear for surfaces without much hidden regularity.
+//!
+//! Source: ours, after Brinkmann, McKay 2007.
 
 use crate::ids::VertexId;
 use crate::signature_text::{SEPARATOR, SignatureError, components, push_number};

@@ -10,6 +10,8 @@
 //! The link of an open vertex is to be closed by a disk of triangles, one a hex, whose rim has one side for each open quad there. Only a
 //! triangle that *is* the disk has single hexes at neighbouring open edges; else those edges are ears, no two of them neighbours. A disk
 //! without an inner vertex has two ears or is that triangle. That bounds the number of single edges from above, and `a` from below.
+//!
+//! Source: ours; Euler's formula.
 
 use crate::state::State;
 

@@ -1,4 +1,6 @@
 //! The name of a partly filled sphere up to given symmetries of the sphere: what lies behind each quad, read outside in.
+//!
+//! Source: ours, after Brinkmann, McKay 2007.
 
 use crate::state::{Hex, MAX_VERTICES};
 use hexfill_mesh::cube::FACETS;

@@ -2,6 +2,8 @@
 //!
 //! New vertices are interchangeable, so only the next unused id is tried. Under a symmetry a new vertex comes with its whole orbit, one
 //! try for each stabilizer it may have; the other vertices of the orbit are then old ones for the corners still to be chosen.
+//!
+//! Source: ours; hexes whose vertices are chosen from the boundary inward are the search of Verhetsel et al. 2018.
 
 use crate::corners::{DISTANCE, HULL};
 use crate::mirror::{Mirror, Sides};

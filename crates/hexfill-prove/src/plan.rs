@@ -2,6 +2,8 @@
 //!
 //! Of tasks that symmetries of the boundary carry to each other one is kept: what lies below one is the image of what lies below the
 //! other. The tasks depend on surface, bound and group alone.
+//!
+//! Source: ours.
 
 use crate::code::code;
 use crate::cover::Cover;

@@ -12,6 +12,8 @@
 //!   disk as its link.
 //!
 //! All changes are journalled; `undo` goes back.
+//!
+//! Source: ours; the pair table is that of `topology/star.rs` in `hexfill-check`.
 
 use crate::error::ProveError;
 use crate::journal::Journal;

@@ -4,6 +4,8 @@
 //! (parent `u32`, flip 2 bytes, class hash 5 bytes), xxh3-64 of all that. A level is written in one go and synced, so a
 //! killed growth loses the level in flight; a torn last record is cut off on resuming.
 //! All numbers little-endian. The *packed* form of an atlas is another file ([`crate::atlas_packed`]).
+//!
+//! Source: ours.
 
 use crate::atlas::{Atlas, short_hash};
 use crate::atlas_packed::PACKED_MAGIC;

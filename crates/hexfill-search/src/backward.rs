@@ -5,6 +5,8 @@
 //! So a known state completes the way if the pairs it blocks and the pairs the k hexes use are disjoint, under one of the
 //! automorphisms of the sphere where they meet. The growth of an atlas forgets most states of a class; this
 //! finds which of those it knows would have been better remembered.
+//!
+//! Source: ours.
 
 use crate::canonical::{Canonical, relabel};
 use crate::cavity::Cavity;

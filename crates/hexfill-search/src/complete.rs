@@ -3,6 +3,8 @@
 //! What a growth did not reach is searched [backward](crate::backward) from. The ways found join what is known, so later
 //! searches meet them. Targets are taken in batches that only read what is known: the result does not depend on the
 //! number of threads.
+//!
+//! Source: ours; that every class of a size is there is counted against Brinkmann et al. 2005.
 
 use crate::atlas::{Atlas, short_hash};
 use crate::backward::{Breadth, Way, shorter_way};

@@ -13,6 +13,8 @@
 //! at least two vertices meet properly iff no pair of S is a body diagonal, a diagonal of a quad forces that whole quad,
 //! and otherwise S is one edge. So every edge of the new hex that the covered quads do not have, every diagonal of a
 //! quad that is not covered and every body diagonal must join a pair that nothing has used yet.
+//!
+//! Source: Bern, Eppstein and Erickson 2002; that pairs of vertices decide is ours (proof: `topology/star.rs` of `hexfill-check`).
 
 use crate::cavity::{Cavity, MAX_QUADS, MAX_VERTICES, Pairs, next, turn};
 use hexfill_mesh::cube::{BODY_DIAGONALS, EDGES, FACET_DIAGONALS, FACETS};

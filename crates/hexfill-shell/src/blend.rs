@@ -2,6 +2,8 @@
 //!
 //! The inside of every block is the transfinite interpolation of its facets, theirs that of their edges (Gordon, Hall 1973).
 //! Where the surface is a box that is exact; elsewhere it is a first guess for smoothing.
+//!
+//! Source: Gordon, Hall 1973 (transfinite interpolation).
 
 use hexfill_mesh::Context;
 use hexfill_mesh::cube::EDGES;

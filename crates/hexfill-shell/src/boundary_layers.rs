@@ -3,6 +3,8 @@
 //! A pillow is a sheet that ends nowhere on the surface, so it may be cut into any number of layers: the surface stays. Heights
 //! are measured along the pillow's own edges, from the surface inward; where an edge is too short for the heights asked for, they
 //! shrink there by one factor.
+//!
+//! Source: ours; a sheet cut into layers is plain refinement along a dual surface.
 
 use crate::blend::blend_block;
 use crate::compress::uncompressed;

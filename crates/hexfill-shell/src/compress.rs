@@ -6,6 +6,8 @@
 //! their angles, and so does every rail without which the coarse surface would not be proper.
 //! On surfaces that are not spheres rails go in pairs: then every loop crosses as many chords as before, mod 2, and what
 //! could be filled still can (Erickson 2014).
+//!
+//! Source: ours; that pairs of chords may go on any surface follows from Erickson 2014, section 4.
 
 use crate::angles::FLAT;
 use hexfill_mesh::{Dart, QuadSurface, VertexId, is_proper};

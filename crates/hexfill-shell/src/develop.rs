@@ -8,6 +8,8 @@
 //! Components are developed one by one; a cavity is placed by the affine map that takes the outer component's development nearest to its positions.
 //!
 //! Invariant: neighbouring vertices lie one step apart, and quads face outward of the solid as those of the surface do.
+//!
+//! Source: ours, after Tarini et al. 2004.
 
 use hexfill_geometry::{cone, det};
 use hexfill_mesh::{Dart, QuadSurface};

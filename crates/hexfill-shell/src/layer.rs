@@ -7,7 +7,9 @@
 //! mirror images across the rungs, the same hexes close the void. On surfaces that are not spheres a set of rings whose
 //! union separates takes the place of one.
 //!
-//! The cost of a move is how far the edges it completes are from the hexes they want (`shelling.md`, section 3).
+//! The cost of a move is how far the edges it completes are from the hexes they want (book, page `shelling`, "Layers and closings").
+//!
+//! Source: Müller-Hannemann 2001 (dual cycles eliminated one after the other); the cost by angles and the closings are ours.
 
 use crate::dart::{next, opposite, prev};
 use crate::pairs::Join;

@@ -1,3 +1,5 @@
+//! Source: Mitchell, Tautges 1995.
+//!
 //! [`pillow`]: one sheet more, round some hexes of a mesh.
 
 use crate::cells::{Cells, is_sphere};

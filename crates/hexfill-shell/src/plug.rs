@@ -8,6 +8,8 @@
 //! The slice joins the strands that crossed the ring in pairs, by the chords of the quadrangulation. Strands joined badly make chords that cross
 //! themselves, which no flip can undo; so among all rings and quadrangulations that plug is taken that leaves the fewest self-crossings (measured
 //! essential), then the fewest hexes.
+//!
+//! Source: ours.
 
 use crate::dart::{next, opposite, prev};
 use crate::front::{Front, NONE};

@@ -5,6 +5,8 @@
 //!
 //! Invariant: two cells share a facet unless a quad of the surface lies between them, and corners are one vertex iff shared facets join them. So
 //! parts of a bent surface that only *touch* in the grid stay apart; a surface whose parts overlap there is refused.
+//!
+//! Source: ours, after Tarini et al. 2004.
 
 use crate::develop::{Development, Site};
 use crate::front::{Front, NONE};

@@ -3,6 +3,8 @@
 //! One sweep takes the legal move of least cost until the void is closed or no move is legal. Restarts multiply every cost
 //! by a random factor; what comes out is ranked by (cost, hexes after lifting, number of the restart), so the result does
 //! not depend on the number of threads.
+//!
+//! Source: ours on top of Müller-Hannemann 2001, who takes the cycles in one order; noise and restarts are ours.
 
 use crate::dart::{next, prev};
 use crate::layer::{Move, Places, Ring, consider, make, rings};

@@ -11,9 +11,10 @@
 //! what positions allow, not what they will be.
 //! Where the hexes at v do not lie one a quad round one edge (meshes of the construction), all hexes at v may be shrunk first, which puts
 //! such a layer there; where stars without any valid placement are left, a layer under the whole surface may help.
-//! Related: N. Reberol et al., *Robust topological construction of all-hexahedral boundary layer meshes*, 2023.
 //!
 //! Invariant: boundary quads and the ids of their vertices never change; new vertices follow the old ones.
+//!
+//! Source: ours; Reberol et al. 2023 solve the same need by integer programs over the fans of all vertices.
 
 mod choose;
 #[cfg(test)]

@@ -3,6 +3,8 @@
 //! First come whole layers (pillows) if asked for, then the plugs of handles, then the sweep itself (see `sweeper`), then what is done about
 //! chords that cross themselves (see `stir`),
 //! and at last the atlas. On spheres whose chords are simple the sweep alone closes the void.
+//!
+//! Source: Folwell, Mitchell 1999 (curves contracted until the void is closed); plugs, stirring and the atlas at the end are ours.
 
 use crate::front::{Front, NONE};
 use crate::stir::stir_front;

@@ -11,6 +11,8 @@
 //!
 //! Where wants are stated (r hexes still wanted round each front edge), a flip has a cost: the sum of (r - 1)^2 over the edges the hex buries, of r^2
 //! over those that a zip buries, and of max(0, 1 - r)^2 over the edges at its rim, which lost one and need one more at least.
+//!
+//! Source: Bern, Eppstein and Erickson 2002 (flips); merging two tops by zips is ours.
 
 use crate::dart::{next, opposite, prev};
 use crate::front::{Front, NONE};

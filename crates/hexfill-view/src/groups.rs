@@ -1,3 +1,5 @@
+//! Source: ours.
+//!
 //! [`Groups`]: the parts of a boundary that have tags, to be told apart by colour.
 
 use hexfill_mesh::{Facet, HexId, HexMesh};

@@ -1,3 +1,5 @@
+//! Source: ours.
+//!
 //! [`check_mesh`]: the judge on any mesh, ours or not.
 
 use crate::problem::Problem;

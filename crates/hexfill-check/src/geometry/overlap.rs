@@ -10,6 +10,8 @@
 //! hulls (quads without a common vertex; they are cut into quarters where needed), or a plane through the common vertex or edge
 //! has the remaining corners strictly on different sides. The plane is sought by Gilbert's algorithm for the point of least
 //! norm of a convex hull, and checked with an error bound. What is not separated is not proved to overlap.
+//!
+//! Source: ours; Gilbert 1966 for the plane between two hulls.
 
 use super::bernstein::{UNIT, Vector, dot, norm};
 use crate::parallel::tasks;

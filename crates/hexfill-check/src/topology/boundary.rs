@@ -1,4 +1,6 @@
 //! Level 3: the boundary against the prescribed surface, and the components of the boundary with their genus.
+//!
+//! Source: ours.
 
 use super::boundary_quad::BoundaryQuad;
 use super::parity::ParityForest;

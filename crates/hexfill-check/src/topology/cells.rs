@@ -1,4 +1,6 @@
 //! Edges and quads as lists, star by star: what the homology needs and no more.
+//!
+//! Source: ours.
 
 use super::star::corner_table;
 use super::stars::Stars;

@@ -2,6 +2,8 @@
 //!
 //! Two passes over the hexes and one array of `8 * hexes` codes; no hash map. Every range of vertices is filled by one
 //! thread that scans all hexes in order, so the arrays do not depend on the number of threads.
+//!
+//! Source: ours; counting sort.
 
 use rayon::prelude::*;
 

@@ -2,6 +2,8 @@
 //!
 //! A solid may have components with odd numbers of quads if their number is even (Erickson 2014 pairs them in the same way).
 //! What becomes of a corridor: `joins/mod.rs`.
+//!
+//! Source: Erickson 2014 (odd components are paired); the search for ways that do not touch is ours.
 
 use super::complex::TetComplex;
 use crate::error::ConstructError;

@@ -2,6 +2,8 @@
 //!
 //! The layer's inner facet of a quad is two triangles, and the proof that cells and core meet properly (book, page
 //! `construction`, "Why the result is proper", 2) needs a tet to meet them in one simplex.
+//!
+//! Source: ours (book, page `construction`, "Why the result is proper").
 
 use super::complex::{TET_EDGES, TetComplex};
 use super::request::TetRequest;

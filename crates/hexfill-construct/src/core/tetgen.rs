@@ -5,6 +5,8 @@
 //! apart (tetgen 1.5.0 stops on an assertion of its own on some small tori, on others only with `-M`). It fills everything that the surface encloses, cavities
 //! as well; which tets belong to the solid is decided here, by walking inward from the triangles asked for, and so is
 //! the orientation of each tet: nothing rests on the signs of small volumes.
+//!
+//! Source: the tetgen manual, for its files and options; the way back from an answer to tets inside is ours.
 
 use super::complex::{OUTWARD, TetComplex, others, sorted};
 use super::fit::fitted;

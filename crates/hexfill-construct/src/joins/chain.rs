@@ -1,4 +1,6 @@
 //! A chain of hexes between two cubes, and the boundary of the ball that all together are.
+//!
+//! Source: Erickson 2014 (odd components are paired); the chain of hexes is ours.
 
 use crate::core::complex::sorted;
 use crate::ids::PointId;

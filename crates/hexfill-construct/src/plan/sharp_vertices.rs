@@ -5,6 +5,8 @@
 //! possible there. The *strain* of a vertex is its number of hexes by its solid angle. Exchanging matched and unmatched edges along
 //! short alternating cycles lowers the sum of a high power of the strains. Measured on Schneiders' pyramid: the worst
 //! scaled Jacobian of an embedding follows the largest strain (see `record/`).
+//!
+//! Source: ours; measured in `record/construct-2026-11-21.md`.
 
 use super::matching::LightSides;
 use crate::cells::library::CellLibrary;

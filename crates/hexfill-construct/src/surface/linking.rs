@@ -6,6 +6,8 @@
 //! The numbers come from Gauss's integral in closed form for straight segments (Klenin and Langowski 2000), rounded;
 //! they are believed only if they are near whole numbers and the matrix has what theory demands: L - L^T, the
 //! intersection form, is invertible over Z (checked modulo 2 and modulo an odd prime).
+//!
+//! Source: Klenin and Langowski 2000, method 1a (the integral), Hatcher 2002, theorem 3.44 (Alexander duality); the test of the matrix is ours.
 
 use super::polygons::{DartId, Darts, TreeCotree, tree_cotree, tree_loop};
 use crate::missing::MissingInterior;

@@ -2,6 +2,8 @@
 //!
 //! A component lies inside another iff the other winds round one of its vertices ([`holders`]). At even depth it is the outside
 //! of a solid, at odd depth a cavity of the solid round it; outsides must face outward (positive volume), cavities the other way.
+//!
+//! Source: van Oosterom, Strackee 1983 (winding numbers); levels by parity are ours.
 
 use crate::missing::MissingInterior;
 use hexfill_geometry::{Vector, det, holders, sub};

@@ -3,6 +3,8 @@
 //! In a valid mesh of a surface that does not cross itself the corners at a boundary vertex tile its solid angle, and
 //! those at a boundary edge its dihedral angle. So some corner has at most the mean of either, and the determinant of three unit vectors is
 //! bounded by the angles they span.
+//!
+//! Source: ours.
 
 use hexfill_geometry::{Vector, dihedral_angle};
 use std::collections::BTreeMap;

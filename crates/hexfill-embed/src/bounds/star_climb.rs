@@ -1,6 +1,8 @@
 //! Good directions for a star: linear programs in trust regions from some starts.
 //!
 //! What is returned is attained; that nothing is better is for [`super::star_search`] to say.
+//!
+//! Source: Madsen 1975 (a max-min problem by linear programs in a trust region).
 
 use super::sphere_piece::Piece;
 use super::star_directions::Directions;

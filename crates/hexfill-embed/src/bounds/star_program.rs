@@ -2,6 +2,8 @@
 //!
 //! It maximises t with `t <= value + gradient . d (+ terms of higher order)` for every corner, `d` within the pieces (as boxes
 //! round the caps).
+//!
+//! Source: Madsen 1975; the bounds on terms of higher order are ours.
 
 use super::sphere_piece::Piece;
 use super::star_directions::Directions;

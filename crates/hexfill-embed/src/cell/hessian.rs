@@ -2,6 +2,8 @@
 //!
 //! For `s = det(u1, u2, u3)` with unit vectors `u = c / |c|`: across two columns the derivative of the cross product,
 //! within one column, with `n = u_l x u_m`, `-(n u' + u n') - s (I - 3 u u')` over `|c|^2`.
+//!
+//! Source: ours; calculus.
 
 use hexfill_geometry::{Vector, cross, det, norm, scale};
 

@@ -4,6 +4,8 @@
 //! s above the level t and pulls at those below t + w only, the worst most; so good cells stay where they are. A scaled Jacobian does not know
 //! lengths, so short edges have a barrier of their own ([`EdgeFloors`]). L-BFGS minimises (interior-point methods solve max-min problems
 //! in this way, the level following the worst value: Fiacco and McCormick 1968).
+//!
+//! Source: Fiacco, McCormick 1968.
 
 use super::edge_floors::EdgeFloors;
 use crate::cell::frame::{CORNER_MIXED, FRAME_EDGES, Frame, MIXED};

@@ -1,3 +1,5 @@
+//! Source: ours.
+//!
 //! [`Goal`]: what linear programs improve.
 
 /// What is improved.

@@ -1,4 +1,6 @@
 //! Linear programs in patches round the worst cells, for meshes too large for one program.
+//!
+//! Source: ours, with the programs of Madsen 1975.
 
 use super::each_patch::improve_each;
 use super::goal::Goal;

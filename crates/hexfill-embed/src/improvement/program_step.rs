@@ -3,6 +3,8 @@
 //! Variables are `d / (radius * reach)` in [-1, 1], one for each of the problem, and `t - value`. With multipliers given, `d' H d / 2` is taken off, H minus
 //! their sum of the second derivatives: the Lagrangian's model of sequential quadratic programming (Wilson 1963; Nocedal and Wright 2006,
 //! chapter 18), each summand made convex so that the program is.
+//!
+//! Source: Wilson 1963; Nocedal, Wright 2006, chapter 18.
 
 use super::goal::Goal;
 use super::program_rows::{Place, Row, guards};

@@ -6,6 +6,8 @@
 //! program gives the step. A step is taken only if the true worst value over whole cells improves and every cell
 //! stays positive, so validity is never traded for corners: the worst value of a cell comes from bisection, and the points
 //! where it was seen become rows of the next program.
+//!
+//! Source: Madsen 1975; Fletcher 1987, chapter 14.
 
 use super::goal::Goal;
 use super::program_rows::{Place, linearise};

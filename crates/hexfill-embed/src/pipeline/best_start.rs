@@ -3,6 +3,8 @@
 //! Starts run in batches whose sizes do not depend on the threads, and the best start is chosen by its [`Verdict`] and
 //! then by number, so the result does not depend on them either.
 //!
+//! Source: ours.
+//!
 //! [`Verdict`]: crate::quality::Verdict
 
 use super::assess::assess;

@@ -3,6 +3,8 @@
 //! The free vertices of a patch are those of the cells within some rings of the seeds that are free in the whole; its
 //! cells are all cells at a free vertex, so a patch sees everything its vertices can spoil. Patches that share a cell are
 //! merged, hence can be solved at the same time and written back in any order with the same result.
+//!
+//! Source: ours.
 
 use super::free_vertices::{FIXED, Problem};
 use hexfill_geometry::Vector;

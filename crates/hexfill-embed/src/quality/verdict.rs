@@ -1,3 +1,5 @@
+//! Source: ours.
+//!
 //! [`Verdict`]: which of two embeddings of a mesh is better.
 
 use super::worst_cells::{bad_cells, worst_value};

@@ -1,4 +1,6 @@
 //! Named and regular surfaces: the cube, benchmark spheres, tori, voxel surfaces, refinement.
+//!
+//! Source: the catalogue for named surfaces; the others are ours.
 
 use crate::cube::{FACETS, POSITIONS};
 use crate::ids::VertexId;

@@ -1,3 +1,5 @@
+//! Source: the collapses of its two neighbours, over and over.
+//!
 //! [`collapse`]: everything that can be pressed flat.
 
 use crate::simplify::column_collapse::collapse_columns;

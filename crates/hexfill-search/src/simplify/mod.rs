@@ -11,6 +11,8 @@
 //! Work comes in batches: a batch of regions is grown in a mesh at rest by all threads, each with random numbers of its own,
 //! and their offers are then placed in order, those that no longer fit being dropped. So the result is the same for any number
 //! of threads, unless the clock ends it.
+//!
+//! Source: Verhetsel et al. 2018 (balls exchanged for smaller ones), Kirkpatrick et al. 1983 (annealing).
 
 mod collapse;
 #[cfg(test)]

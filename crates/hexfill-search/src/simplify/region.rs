@@ -4,6 +4,8 @@
 //! ball and hex together are a ball again (two balls glued along a disk). The test is local: the six quads as a mask, the
 //! corners that no shared quad has must not be in the ball, and edges between its other corners that no shared quad has must
 //! not be edges of the ball's boundary. Every region is therefore shellable, in the order of its hexes.
+//!
+//! Source: Verhetsel et al. 2018 (balls grown in the mesh).
 
 use crate::cavity::{Cavity, MAX_QUADS};
 use crate::simplify::live::{LiveMesh, NONE};

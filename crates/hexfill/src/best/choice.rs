@@ -1,3 +1,5 @@
+//! Source: ours.
+//!
 //! [`Choice`]: why this mesh and no other.
 
 use crate::fill::filled::{Filled, Route};

@@ -3,6 +3,8 @@
 //! The smallest filling of a small surface often has none. Then more fillings are looked for, and at last the surface is
 //! constructed, whose cells were chosen for their coordinates. Nothing is lost: where nothing is certified, the smallest
 //! filling stays.
+//!
+//! Source: ours.
 
 mod budget;
 pub(crate) mod choice;

@@ -1,3 +1,5 @@
+//! Source: ours.
+//!
 //! [`cure`]: the smallest changes that make a surface one to fill.
 
 use crate::problem::Problem;

@@ -1,3 +1,5 @@
+//! Source: ours.
+//!
 //! [`doctor`]: everything about a surface before the work.
 
 pub(crate) mod crossings;

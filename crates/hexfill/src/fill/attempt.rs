@@ -1,3 +1,5 @@
+//! Source: ours.
+//!
 //! [`Attempt`]: what was tried.
 
 use hexfill_construct::{ConstructError, Report};

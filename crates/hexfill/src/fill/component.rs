@@ -1,4 +1,6 @@
 //! One solid: the engines in their order.
+//!
+//! Source: ours.
 
 use crate::fill::construct::construct;
 use crate::fill::error::FillError;

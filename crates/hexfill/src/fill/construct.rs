@@ -1,4 +1,6 @@
 //! The construction, made smaller if that was asked for.
+//!
+//! Source: ours.
 
 use crate::fill::attempt::Attempt;
 use crate::fill::error::FillError;

@@ -1,3 +1,5 @@
+//! Source: ours.
+//!
 //! [`Filled`]: a verified mesh and how it was found.
 
 use crate::fill::attempt::Attempt;

@@ -1,3 +1,5 @@
+//! Source: ours.
+//!
 //! [`Maker`]: which engine, or which step of one, made a hex.
 
 use hexfill_mesh::{HexId, HexMesh};

@@ -1,3 +1,5 @@
+//! Source: Erickson 2014, section 4.
+//!
 //! [`ExistenceInfo`]: whether a hex mesh exists, for people and for JSON.
 
 use hexfill_construct::Existence;

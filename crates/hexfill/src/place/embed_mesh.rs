@@ -1,3 +1,5 @@
+//! Source: ours.
+//!
 //! [`embed_mesh`]: new positions for the interior vertices of any hex mesh.
 
 use crate::place::placed::Placed;

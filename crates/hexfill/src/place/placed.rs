@@ -1,3 +1,5 @@
+//! Source: ours.
+//!
 //! [`Placed`]: positions with the judge's verdict on every hex.
 
 use crate::place::report::GeometryReport;

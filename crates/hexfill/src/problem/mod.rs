@@ -1,3 +1,5 @@
+//! Source: ours.
+//!
 //! [`Problem`]: a surface to fill, wherever it came from: a file, arrays, the catalogue, or a signature.
 
 pub mod catalog;

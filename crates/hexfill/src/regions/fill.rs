@@ -1,3 +1,5 @@
+//! Source: ours.
+//!
 //! [`fill_regions`]: each region by itself, and all put together.
 
 use crate::best::{PlaceOptions, PlacedFill, fill_placed};

@@ -3,6 +3,8 @@
 //! Every face has two sides. Round an edge the faces are sorted by angle; between one and the next lies one region, whose sides there belong together.
 //! So sides fall into shells: closed surfaces, seen from the region they bound. A shell of positive volume bounds a region from outside; one of
 //! negative volume is a cavity of the region it lies in, or the outside of everything. Regions that hexes of the file fill already are left out.
+//!
+//! Source: ours.
 
 pub(crate) mod error;
 pub(crate) mod fill;

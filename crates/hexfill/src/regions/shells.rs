@@ -1,4 +1,6 @@
 //! Faces with their two sides, and the shells that sides make round regions.
+//!
+//! Source: ours.
 
 use crate::regions::error::RegionsError;
 use hexfill_geometry::{Vector, cone, cross, direction, dot, midpoint, sub};

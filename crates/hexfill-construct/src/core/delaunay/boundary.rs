@@ -4,6 +4,8 @@
 //! A point on the boundary is drawn onto a neighbour if the tets allow it. Else it moves inward, and the flat
 //! polygon round it is triangulated without it: the new triangles and the moved point are new tets, which it sees
 //! because it lies on the inner side of their planes.
+//!
+//! Source: George, Borouchaki, Saltel 2003 and Si and Gärtner 2005 for points that leave the boundary again; the moves are ours.
 
 use super::conform::TriangleId;
 use super::solid::{Solid, unit_or_zero};

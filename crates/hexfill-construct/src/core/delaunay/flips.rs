@@ -3,6 +3,8 @@
 //! Rounded points that lie almost on a circle or in a plane make tets with hardly any volume (a Delaunay tetrahedralisation
 //! takes them as they come), and such tets bar every move of their corners. Removing an edge (Freitag and Ollivier-Gooch 1997)
 //! tries all triangulations of the ring of vertices round it, by dynamic programming (Klincsek 1980). No flip touches the boundary.
+//!
+//! Source: Freitag and Ollivier-Gooch 1997 (removing edges), Klincsek 1980 (the best triangulation of a ring).
 
 use super::solid::{FLOOR_INSIDE, Solid};
 use crate::core::complex::{OUTWARD, TET_EDGES};

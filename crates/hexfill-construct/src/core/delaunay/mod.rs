@@ -9,6 +9,8 @@
 //! All decisions about orientation are exact (adaptive predicates, Shewchuk 1997), and no random choice is made. A
 //! surface that meets itself is refused: its triangles cannot all be faces, so step 2 runs out of points or step 3
 //! finds sides that contradict each other.
+//!
+//! Source: the papers of each step, named on its page; the order and the exactness throughout are ours.
 
 mod boundary;
 mod conform;

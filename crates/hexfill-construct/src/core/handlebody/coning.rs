@@ -2,6 +2,8 @@
 //!
 //! Edges and faces get names: those of the sphere's edges (merged where fans are glued) and spokes from the apex to every copy;
 //! the sphere's triangles and walls from the apex over every edge. So an apex may have several edges to one vertex.
+//!
+//! Source: Eppstein 1999 (the cone); gluing the fans again is ours.
 
 use super::cutting::Cutting;
 use super::prism::{PRISM_TETS, Prism, SIDES};

@@ -2,6 +2,9 @@
 //!
 //! A loop that does not bound on the surface but does inside is found among the fundamental loops of breadth-first trees (as shortest
 //! non-separating loops are, Erickson and Har-Peled 2004), and where these do not have one, in a covering graph.
+//!
+//! Source: Erickson and Har-Peled 2004 for fundamental loops of shortest paths; the homology that decides is of `surface/linking.rs`, the covering graph
+//! ours.
 
 use super::cutting::Cutting;
 use crate::error::ConstructError;

@@ -1,3 +1,5 @@
+//! Source: the Nastran guide.
+//!
 //! [`Card`]: one card of bulk data with its continuations, in fields of 8 or 16 columns or between commas.
 
 use crate::error::ReadError;
