@@ -246,6 +246,8 @@ pub fn verify_certificate(json: &str, input: &Judged<'_>, ctx: &Context<'_>) -> 
     if given.format != FORMAT {
         return Err(CertificateError::Format { given: given.format });
     }
+    // Text first, then what it is about, then the numbers: the first thing that is wrong is the one that is named.
+    // The seal is a checksum and no signature: who changes the text can seal it again, and is found by the numbers.
     if given.seal != given.expected_seal() {
         return Err(CertificateError::Altered);
     }

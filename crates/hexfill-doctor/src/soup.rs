@@ -1,6 +1,6 @@
-//! Source: ours.
-//!
 //! [`Soup`]: points and faces as a file holds them, nothing being known of how they fit.
+//!
+//! Source: ours.
 
 use hexfill_mesh::{QuadSurface, SurfaceError};
 

@@ -85,6 +85,8 @@ impl Boundary {
                 let (a, f) = b.owner[q];
                 let mut a = a as usize % MAX_CUBES;
                 let (mut g, mut l) = TURN[f as usize][k];
+                // Through the fan of cubes round the edge to the other boundary quad of the same fan: an edge that
+                // the solid touches twice is two edges here.
                 while c.next[a][g as usize % 6] != FREE {
                     let side = g as usize % 6;
                     let (p, r) = (FACETS[side][l as usize & 3], FACETS[side][(l as usize + 1) & 3]);
@@ -209,6 +211,7 @@ impl Boundary {
             }
             count += 1;
         }
+        // A vertex counts once for each fan of quads: one that the boundary passes twice is two.
         let mut seen = [0u8; MAX_QUADS];
         for q in 0..n {
             for k in 0..4 {

@@ -71,6 +71,8 @@ impl Plan {
                                 .into(),
                     });
                 }
+                // Three levels below a node are work enough for a chunk, and the nodes so few that they are made anew
+                // by everyone.
                 let split = params.cubes.saturating_sub(3).max(1);
                 let cube = Complex::cube();
                 let mut nodes = vec![(cube, canonical(&cube).automorphisms)];
@@ -88,6 +90,8 @@ impl Plan {
                 }
                 Nodes::Early(nodes)
             }
+            // Not hereditary: whether a cube was last can only be told by whether the rest is a class of the level
+            // before, so all of that level is needed.
             Rule::Weill => {
                 let mut levels = all_levels(&before, options, Wanted::default(), true, ctx)?;
                 let codes = levels.pop().map(|level| level.codes).unwrap_or_default();

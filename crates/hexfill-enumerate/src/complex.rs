@@ -90,6 +90,7 @@ impl Complex {
         c.next = [[FREE; 6]; MAX_CUBES];
         for a in 0..cubes.len() {
             for b in 0..a {
+                // Fewer than four common vertices hold no side.
                 let common = c.sets[a] & c.sets[b];
                 if common.count_ones() < 4 {
                     continue;

@@ -386,10 +386,12 @@ impl<F: FnMut(&Complex, u8)> Site<'_, F> {
         });
         let own = set_of(&corners);
         let renamed;
+        // Most candidates merge no old vertices, and then the parent's own tables serve.
         let (cubes, sets) = if state.n_classes == 0 {
             (&parent.cubes, &parent.sets)
         } else {
             renamed = merged(parent, state);
+            // A merge may make two old cubes improper that the new one does not touch.
             if !old_pairs_are_proper(parent, &renamed.0, &renamed.1) {
                 return;
             }
@@ -400,6 +402,7 @@ impl<F: FnMut(&Complex, u8)> Site<'_, F> {
             let legal = match common.count_ones() {
                 0 | 1 => true,
                 2 => joined(&corners, common) && joined(&cubes[a], common),
+                // Four common vertices are legal only as the facet that was glued.
                 4 => state.touched >> a & 1 == 1,
                 _ => false,
             };

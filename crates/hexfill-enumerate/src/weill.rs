@@ -167,6 +167,7 @@ impl<F: FnMut(&Complex, u8)> Site<'_, F> {
             }
         }
         // Rules 1 and 2.
+        // Sets of vertices in one word: an intersection is an `and`, and most candidates end here.
         let free: [u64; 6] =
             std::array::from_fn(|f| if glued >> f & 1 == 1 { 0 } else { side_set_of(&candidate.corners, f) });
         for other in &parent.sets[..parent.n_cubes()] {

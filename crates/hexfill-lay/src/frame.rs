@@ -1,6 +1,6 @@
-//! Source: ours.
-//!
 //! [`Frame`]: where the work is done.
+//!
+//! Source: ours.
 
 use hexfill_geometry::{Vector, norm, sub};
 

@@ -1,6 +1,6 @@
-//! Source: ours.
-//!
 //! [`LaidMesh`]: what laying makes.
+//!
+//! Source: ours.
 
 use hexfill_geometry::Vector;
 use hexfill_mesh::HexMesh;

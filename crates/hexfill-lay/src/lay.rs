@@ -1,6 +1,6 @@
-//! Source: ours (book, page `shelling`, "Laying").
-//!
 //! [`lay`]: the verb.
+//!
+//! Source: ours (book, page `shelling`, "Laying").
 
 use crate::fewer::without_sheets;
 use crate::frame::Frame;

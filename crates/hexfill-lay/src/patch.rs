@@ -1,6 +1,6 @@
-//! Source: ours.
-//!
 //! [`Patch`]: what lies round the void, where hexes are laid; the rest of the mesh need not be looked at.
+//!
+//! Source: ours.
 
 use crate::laying::Laying;
 use crate::open_mesh::OpenMesh;

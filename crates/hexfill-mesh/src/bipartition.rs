@@ -44,6 +44,7 @@ pub fn bipartition(surface: &QuadSurface) -> Result<Vec<bool>, OddCycle> {
         }
         parent[root] = VertexId::new(root);
         queue.push_back(VertexId::new(root));
+        // Breadth first, so that the odd cycle, where there is one, is made of two shortest paths and short.
         while let Some(v) = queue.pop_front() {
             let Some(first) = dart[v.index()] else { continue };
             for d in surface.round_vertex(first) {

@@ -137,6 +137,8 @@ impl<'a> HexWalker<'a> {
             at += 1;
             let hex = self.mesh.hex(h);
             for (s, corners) in FACETS.iter().enumerate() {
+                // Frames may be reflections, so a facet is not told by its number in the frame alone: a diagonal of
+                // it tells.
                 let [a, _, c, _] = corners.map(|i| usize::from(frame[i]));
                 let side = usize::from(tables.facet_with_diagonal[a][c]);
                 let Some(other) = self.mesh.neighbour(Facet::new(h, side)) else {
@@ -173,6 +175,7 @@ impl<'a> HexWalker<'a> {
                     } else {
                         next - *label
                     };
+                    // The first of the four is one higher, as 0 in its place says "boundary".
                     if !visit(number + u32::from(j == 0)) {
                         return;
                     }

@@ -299,6 +299,9 @@ fn glue_facets(n_vertices: usize, hexes: &[[VertexId; 8]]) -> Result<Vec<Facet>,
         *slot += 1;
     }
     drop(cursor);
+    // Two facets with the same four vertices are one quad if their cycles agree. In another cycle an edge of the one
+    // would be a diagonal of the other, which no mesh may have. Sorted and not hashed: the first offender named must
+    // not depend on a hash.
     let mut neighbour = vec![Facet::NONE; n_facets as usize];
     let mut bad = Offenders::default();
     for v in 0..n_vertices {

@@ -183,6 +183,8 @@ impl QuadSurface {
                 surface.degree[v.index()] += 1;
             }
         }
+        // In this order: orientation needs pairs of edges, and a vertex has one fan only if the quads round it turn
+        // the same way.
         surface.pair_edges()?;
         surface.orient()?;
         surface.check_fans()?;

@@ -255,6 +255,8 @@ fn maps(a: &QuadSurface, from: &Form, b: &QuadSurface, to: &Form) -> Vec<Vec<Ver
                 (i, walker_b.order.clone())
             })
             .collect();
+        // Every choice so far with every image not taken yet: a product over the components, so its size is the
+        // number of maps and cannot be less.
         let mut extended = Vec::new();
         for (map, used) in &partial {
             for (i, order) in images.iter().filter(|(i, _)| !used[*i]) {

@@ -158,6 +158,8 @@ impl State {
         for quad in surface.quads() {
             s.add_quad(quad.map(|v| v.0 as u8));
         }
+        // An edge of the sphere is open between its two quads; the outside counts as the path from the one to the
+        // other, so the last hex there closes a circle.
         for d in surface.darts() {
             let (u, v) = (surface.origin(d).index(), surface.target(d).index());
             s.words.set(PAIRS + d.index(), surface.twin(d).0 as u16);

@@ -220,6 +220,7 @@ impl Atlas {
                 named[state as usize] |= keep(usize::from(quads[state as usize]), self.hexes_of(state));
             }
         }
+        // A parent has a smaller number than its child, so one pass downward marks all that a kept state needs.
         for state in (0..self.n_states()).rev() {
             wanted[state] |= named[state] || state == 0;
             if wanted[state] {

@@ -114,6 +114,8 @@ impl GrowthLog {
             return Err(AtlasError::OtherOptions { path: path.to_owned(), given, wanted: growth.options() });
         }
         let mut at = HEADER_BYTES;
+        // Every flip is made again and judged legal again: a log that was edited is refused at the record it was
+        // edited in.
         while let Some((record, end)) = parse_record(&bytes, at, growth.level() + 1, path)? {
             let damaged = |what| AtlasError::Damaged { path: path.to_owned(), offset: at as u64, what };
             growth

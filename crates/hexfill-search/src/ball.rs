@@ -63,6 +63,8 @@ impl Ball {
             for (v, &id) in ids.iter().enumerate() {
                 canonical_ids[usize::from(form.numbers[v])] = id;
             }
+            // The canonical cavity may show the ball's outside in a mirror; two mirrors cancel, and hexes glued
+            // behind one are turned.
             mirrored ^= form.mirrored;
             if usize::from(flip.dart) >= 4 * form.cavity.n_quads() {
                 return None;

@@ -87,6 +87,8 @@ pub fn complete(
     let fewest = |known: &Known| targets.iter().map(|t| known.fewest(t.class)).collect::<Vec<Option<u32>>>();
     let before = fewest(&known);
     known.merge(&Known::from_atlas(kept)?)?;
+    // What the old atlas knew counts as known and not as found, and its classes keep at most the hexes they had: an
+    // atlas never gets worse.
     let with_kept = fewest(&known);
     let gained = before.iter().zip(&with_kept).filter(|(before, now)| before != now).count();
     let mut report = CompleteReport {

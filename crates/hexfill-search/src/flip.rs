@@ -202,12 +202,16 @@ pub fn place(cavity: &Cavity, degrees: &[u8; MAX_VERTICES], flip: Flip) -> Optio
             }
         }
     }
+    // The cube is laid with its bottom on the dart's quad; the other covered facets are found from there through
+    // twins, in the order of the table.
     let mut facet_dart = [NEW; 6];
     facet_dart[BOTTOM] = d;
     for &(side, facet, touch) in &table.around {
         let under = turn(d, 4 - side);
         facet_dart[facet] = turn(twin[usize::from(under)], touch);
     }
+    // Every facet but the bottom was found on one way; where two of them share an edge on the cube, they have to
+    // share it here. (Degree 3 above is the same demand at buried corners.)
     for &(f, i, g, j) in &table.closing {
         let a = turn(facet_dart[f], 4 - i);
         let b = turn(facet_dart[g], 4 - j);

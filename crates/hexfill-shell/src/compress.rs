@@ -116,6 +116,7 @@ impl Rails {
             let mut curve = vec![first];
             let mut d = first;
             let closed = loop {
+                // A rail ends at a singular vertex: taking out a part of it would leave a chord that ends inside.
                 if surface.degree(surface.target(d)) != 4 {
                     break false;
                 }

@@ -134,6 +134,8 @@ impl Development {
             all
         };
         let outer = vertices(outer);
+        // Unrolled alone, a cavity lies anywhere and turned in one of 24 ways. The outer component's own map tells
+        // where it belongs, nearly; whole numbers make it exact, and the polycube refuses what came out wrong.
         let to_grid = Affine::fit(outer.iter().map(|&v| (points[v], self.at[v].map(f64::from))))?;
         for quads in inner {
             let vertices = vertices(quads);

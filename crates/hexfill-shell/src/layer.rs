@@ -190,6 +190,8 @@ pub(crate) fn consider(void: &Void, places: &mut Places, rings: Vec<Ring>) -> Ve
 /// too large.
 fn side_of(void: &Void, places: &mut Places, rings: &[Ring]) -> Option<Vec<u32>> {
     let n = void.quads.len();
+    // Of two sides the smaller one is enough on large surfaces, where a flood over half of the front for each ring
+    // would be quadratic.
     let most = if n > LARGE { n / 2 } else { n };
     places.begin(n);
     for &d in rings.iter().flatten() {
@@ -224,6 +226,8 @@ fn side_of(void: &Void, places: &mut Places, rings: &[Ring]) -> Option<Vec<u32>>
         }
         at += 1;
     }
+    // The flood came round to the left of a ring: the rings together do not separate, and a layer would have no other
+    // side to be contracted to.
     if rings.iter().flatten().any(|&d| places.get(void.twin[prev(d) as usize] >> 2) != Place::Elsewhere) {
         return None;
     }

@@ -150,6 +150,9 @@ fn patch_sets(void: &Void, rings: &[Ring]) -> Vec<Vec<usize>> {
                     continue;
                 }
                 debug_assert_eq!(next(prev(t)), t);
+                // Across a crease the patch ends. Where the quad beyond belongs to a ring that runs along the crease,
+                // that ring can take the patch up as its side; if any part of the boundary has none, the patch is not
+                // a candidate.
                 let ring = ring_of[prev(t) as usize];
                 match &mut set {
                     Some(set) if ring != usize::MAX => set.push(ring),

@@ -92,6 +92,8 @@ pub fn sweep(
             }
         });
     }
+    // Attempts differ by their seeds alone. With wants stated a closed front is not enough: the next attempts look
+    // for one that costs less.
     let mut best: Option<(Front, f64)> = None;
     let mut stopped = None;
     // The last attempt is one without wants, if no other closed: it may, and then costs nothing worse than a search.

@@ -1,6 +1,6 @@
-//! Source: ours.
-//!
 //! [`Groups`]: the parts of a boundary that have tags, to be told apart by colour.
+//!
+//! Source: ours.
 
 use hexfill_mesh::{Facet, HexId, HexMesh};
 use rustc_hash::FxHashMap;

@@ -1,6 +1,6 @@
-//! Source: ours.
-//!
 //! [`check_mesh`]: the judge on any mesh, ours or not.
+//!
+//! Source: ours.
 
 use crate::problem::Problem;
 use hexfill_check::{Judged, Options, Report, judge};

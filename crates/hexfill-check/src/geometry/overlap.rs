@@ -115,6 +115,7 @@ fn separated(a: &[u32; 4], b: &[u32; 4], points: &[Vector]) -> bool {
     let (p, q) = (a.map(at), b.map(at));
     match common[..] {
         [] => {
+            // The error of a coordinate difference is relative to the coordinates and not to the difference.
             let size = p.iter().chain(&q).flatten().fold(0.0, |m: f64, x| m.max(x.abs()));
             apart(&p, &q, 0, size, &mut 0)
         }
@@ -161,6 +162,8 @@ pub(crate) fn overlap(
             ([low, high], i as u32)
         })
         .collect();
+    // Sweep along x: only quads whose boxes begin before this one ends can meet it. Simple, and linear in practice
+    // for surfaces, whose quads are small; a tree would only help where many quads stand one behind the other.
     boxes.sort_by(|a, b| a.0[0][0].total_cmp(&b.0[0][0]).then(a.1.cmp(&b.1)));
     let (mut pairs, mut bad) = (0, Vec::new());
     for first in (0..boxes.len()).step_by(4096) {

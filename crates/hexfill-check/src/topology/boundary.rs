@@ -119,6 +119,7 @@ impl Matching {
             let quad = boundary[b as usize];
             findings.add(Rule::BoundaryQuadExtra, || Offender::at(&[quad.hex], &quad.cycle));
         }
+        // Found in the order of threads, told in the order of ids.
         self.missing.sort_unstable();
         for q in self.missing {
             let quad = surface[q as usize];

@@ -122,6 +122,8 @@ impl TetComplex {
             }
         }
         have.sort_unstable();
+        // Faces are named, so two may have the same vertices (an apex with two edges to one vertex); on the boundary
+        // that would leave open which of them is meant.
         if let Some(w) = have.windows(2).find(|w| w[0].0 == w[1].0) {
             return err(format!("two boundary faces have the vertices {:?}", w[0].0.map(|v| v.0)));
         }

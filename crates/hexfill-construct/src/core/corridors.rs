@@ -47,6 +47,8 @@ pub(crate) fn corridors(
             }));
         }
         let mut odd: BTreeSet<usize> = components.into_iter().filter(|&c| !size[c].is_multiple_of(2)).collect();
+        // An even sum of odd components is an even number of them, so they can be paired; nearest first is good
+        // enough, as each way costs some hexes a tet.
         while let Some(a) = odd.pop_first() {
             // Corridors do not share tets: their balls are filled one by one and must not overlap.
             let Some(tets) = ways.shortest(a, &odd) else {

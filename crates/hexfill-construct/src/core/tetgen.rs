@@ -190,6 +190,8 @@ fn inside(
         faces.extend((0..4).map(|i| (sorted(others(i).map(|k| tet[k])), t)));
     }
     faces.sort_unstable();
+    // A sorted list instead of a map: faces are asked for a few times each, and the answer keeps the order of the
+    // tets.
     let with = |face: [VertexId; 3]| {
         let start = faces.partition_point(|f| f.0 < face);
         faces[start..].iter().take_while(move |f| f.0 == face)
@@ -225,6 +227,8 @@ fn inside(
             }
         }
     }
+    // From the wall inward, never through a wall: cavities and the hull's pockets, which tetgen fills as well, are
+    // not reached.
     while let Some(t) = stack.pop() {
         if std::mem::replace(&mut keep[t], true) {
             continue;

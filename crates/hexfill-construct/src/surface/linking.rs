@@ -73,6 +73,8 @@ pub(crate) fn linking(s: &Darts, points: &[Vector], ctx: &Context<'_>) -> Result
                     sum += gauss(a, b, line[k], line[(k + 1) % line.len()]);
                 }
             }
+            // Gauss's integral of two loops that stay apart is a whole number. Far from one, the loops touch or
+            // nearly do: then nothing here may be believed, and that is said rather than guessed.
             if (sum - sum.round()).abs() > 0.05 {
                 return Err(failed(MissingInterior::LinkingNotWhole));
             }
@@ -81,6 +83,8 @@ pub(crate) fn linking(s: &Darts, points: &[Vector], ctx: &Context<'_>) -> Result
     }
     let n = loops.len();
     let form: Vec<Vec<i64>> = (0..n).map(|i| (0..n).map(|j| numbers[i][j] - numbers[j][i]).collect()).collect();
+    // Over the rationals a rank is at least that modulo a prime: two primes, one of which the answer is about, catch
+    // what rounding may have spoilt.
     for p in [2, 1_000_003] {
         if rank(&form, p) != n {
             return Err(failed(MissingInterior::LinkingAgainstIntersections));

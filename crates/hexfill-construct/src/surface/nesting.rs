@@ -23,6 +23,7 @@ pub(crate) fn solids(
     for (t, &c) in triangles.iter().zip(component) {
         parts[c].push(t.map(|v| points[v.index()]));
     }
+    // From a corner of its own: far from the origin the products would lose the digits that decide the sign.
     let volume = |part: &[[Vector; 3]]| -> f64 {
         let from_origin = part.iter().map(|t| t.map(|p| sub(p, part[0][0])));
         from_origin.map(|[a, b, c]| det(a, b, c)).sum()
@@ -37,6 +38,7 @@ pub(crate) fn solids(
         solid_of[c] = solids.len();
         solids.push(vec![c]);
     }
+    // Second pass: a cavity may have a smaller number than the solid it is in.
     for c in (0..n_components).filter(|&c| !around[c].len().is_multiple_of(2)) {
         if volume(&parts[c]) >= 0.0 {
             return Err(MissingInterior::CavityFacesOutward { component: c });

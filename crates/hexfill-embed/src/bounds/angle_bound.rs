@@ -44,6 +44,7 @@ pub(super) fn angle_bound(corners: &[[u32; 3]], direction: impl Fn(u32) -> Optio
     if n_rim != rim.len() || n_rim < 3 {
         return 1.0;
     }
+    // The area of a spherical polygon by its angles (Girard).
     let solid = sum - (n_rim as f64 - 2.0) * PI;
     let share = solid / corners.len() as f64;
     if solid > 1e-9 && share < FRAC_PI_2 {

@@ -29,6 +29,8 @@ pub(super) fn climb(star: &Directions, hint: &[Vector], enough: f64) -> (f64, Ve
                 break;
             }
             let cells: Vec<Piece> = u.iter().map(|&centre| Piece::around(centre, radius)).collect();
+            // Of first order only: the true value judges the step, so a poor model costs an iteration and nothing
+            // else.
             let Some(step) = solve(star, &cells, Order::First) else { break };
             let reached = star.worst(&step.directions);
             if reached > value {

@@ -1,6 +1,6 @@
-//! Source: ours.
-//!
 //! [`Goal`]: what linear programs improve.
+//!
+//! Source: ours.
 
 /// What is improved.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -124,9 +124,12 @@ fn bend(problem: &Problem, points: &[Vector], place: Place, multiplier: f64, mut
     let hex = &problem.hexes[place.hex];
     let weights = weights_at(place.at);
     let c = columns(&problem.corners_of(place.hex, points), &weights);
+    // A column without length: the measure has no derivative there.
     if scaled(&c) <= -1.0 {
         return;
     }
+    // One place at a time: a sum of convex terms is convex, while the sum of the true Hessians need not be, and the
+    // solver takes convex programs only.
     let h = positive_part(&hessian(&c).map(|r| r.map(|x| -multiplier * x)));
     let movable: Vec<(usize, usize)> = (0..8)
         .filter(|&corner| weights[corner] != [0.0; 3])

@@ -91,6 +91,8 @@ pub(crate) fn patches(problem: &Problem, incidence: &Incidence, seeds: &[usize],
         grown.extend_from_slice(&next);
         front = next;
     }
+    // Vertices of the grown cells move; cells that only touch one of them are in the patch too, as they may be
+    // spoilt, with their other vertices held.
     let mut free = vec![false; problem.n_vertices];
     for &h in &grown {
         for &v in &problem.hexes[h as usize] {

@@ -43,6 +43,8 @@ impl Laplacian {
             Weights::Random(random) => edges.iter().map(|_| random.signed().exp()).collect(),
         };
         let n = problem.free.len();
+        // Rows of free vertices only; fixed neighbours are entries that go to the right side later. The edges are
+        // sorted, so the sums have one order.
         let mut start = vec![0u32; n + 1];
         let slot = |v: u32| problem.slot[v as usize] as usize;
         for &(a, b) in &edges {

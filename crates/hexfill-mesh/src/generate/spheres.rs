@@ -44,6 +44,9 @@ pub fn all_spheres_up_to(n_quads: usize) -> Vec<Vec<QuadSurface>> {
         let mut add = |surface: QuadSurface| {
             classes.entry(surface_signature(&surface)).or_insert(surface);
         };
+        // Each size from smaller ones by the theorem on the page: wheels, P1 from one quad less, P3 from four less.
+        // Every place is tried, and classes are told by their names: slower than plantri, which makes each once, and
+        // independent of it.
         if n % 2 == 0 {
             pseudo_double_wheel(n as u32 / 2).into_iter().for_each(&mut add);
         }

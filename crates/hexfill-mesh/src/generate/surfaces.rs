@@ -157,6 +157,7 @@ pub fn refined(surface: &QuadSurface, k: u32) -> Result<QuadSurface, SurfaceErro
         let dart = |side| crate::ids::Dart::new(crate::ids::QuadId(q), side);
         let inner = next;
         next += (k - 1) * (k - 1);
+        // The sides run counter-clockwise, so two of them against the grid's axes.
         let point = |i: u32, j: u32| match (i, j) {
             (i, 0) => along(dart(0), i),
             (i, j) if i == k => along(dart(1), j),

@@ -206,10 +206,13 @@ impl Region {
             }
         }
         debug_assert_eq!(ids.len(), n + 2, "the boundary of a ball is a sphere");
+        // Euler: a quad sphere of n quads has n + 2 vertices. A ball grown hex by hex is one; this is the last guard
+        // before a table look-up that relies on it.
         if ids.len() != n + 2 {
             return None;
         }
         cavity.n_vertices = ids.len() as u8;
+        // A table of pairs and no map: the boundary is small, and this runs for every ball.
         let mut dart_to = [[u8::MAX; 64]; 64];
         for d in 0..4 * n as u8 {
             let (a, b) = (cavity.origin[usize::from(d)], cavity.origin[usize::from(crate::cavity::next(d))]);

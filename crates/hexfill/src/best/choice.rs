@@ -1,6 +1,6 @@
-//! Source: ours.
-//!
 //! [`Choice`]: why this mesh and no other.
+//!
+//! Source: ours.
 
 use crate::fill::filled::{Filled, Route};
 use serde::{Serialize, Serializer};

@@ -1,6 +1,6 @@
-//! Source: ours.
-//!
 //! [`cure`]: the smallest changes that make a surface one to fill.
+//!
+//! Source: ours.
 
 use crate::problem::Problem;
 use hexfill_doctor::{MendOptions, Soup, mend};

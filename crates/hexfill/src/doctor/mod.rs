@@ -1,6 +1,6 @@
-//! Source: ours.
-//!
 //! [`doctor`]: everything about a surface before the work.
+//!
+//! Source: ours.
 
 pub(crate) mod crossings;
 pub(crate) mod cure;

@@ -1,6 +1,6 @@
-//! Source: ours.
-//!
 //! [`Attempt`]: what was tried.
+//!
+//! Source: ours.
 
 use hexfill_construct::{ConstructError, Report};
 use hexfill_search::{MAX_CAP, SimplifyReport};

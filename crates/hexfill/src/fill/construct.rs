@@ -45,6 +45,7 @@ pub(crate) fn construct(
             }
             made => made?,
         };
+        // Variants differ by diagonals and matchings only; one report stands for all.
         if variant == 0 {
             result.tried.push(Attempt::Construction(Box::new(made.report)));
         }

@@ -1,6 +1,6 @@
-//! Source: ours.
-//!
 //! [`Filled`]: a verified mesh and how it was found.
+//!
+//! Source: ours.
 
 use crate::fill::attempt::Attempt;
 use crate::fill::maker::{Maker, layers, shares};

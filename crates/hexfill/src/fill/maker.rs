@@ -1,6 +1,6 @@
-//! Source: ours.
-//!
 //! [`Maker`]: which engine, or which step of one, made a hex.
+//!
+//! Source: ours.
 
 use hexfill_mesh::{HexId, HexMesh};
 use serde::{Serialize, Serializer};

@@ -1,6 +1,6 @@
-//! Source: ours.
-//!
 //! [`embed_mesh`]: new positions for the interior vertices of any hex mesh.
+//!
+//! Source: ours.
 
 use crate::place::placed::Placed;
 use hexfill_embed::{EmbedError, Options, embed};

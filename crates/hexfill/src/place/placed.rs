@@ -1,6 +1,6 @@
-//! Source: ours.
-//!
 //! [`Placed`]: positions with the judge's verdict on every hex.
+//!
+//! Source: ours.
 
 use crate::place::report::GeometryReport;
 use hexfill_check::{CellQuality, Judged, cell_quality};

@@ -1,6 +1,6 @@
-//! Source: ours.
-//!
 //! [`Problem`]: a surface to fill, wherever it came from: a file, arrays, the catalogue, or a signature.
+//!
+//! Source: ours.
 
 pub mod catalog;
 mod error;

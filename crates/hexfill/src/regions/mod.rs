@@ -55,6 +55,7 @@ pub fn regions(name: &str, data: &MeshData) -> Result<Vec<Region>, RegionsError>
     let of_shell: Vec<Vec<[u32; 4]>> =
         shells.iter().map(|sides| sides.iter().map(|&s| outward(&walls, s)).collect()).collect();
     let at = |quad: [u32; 4]| quad.map(|v| points[v as usize]);
+    // From a point of the shell itself: far from the origin the sign would drown in rounding.
     let volume = |quads: &[[u32; 4]]| {
         let origin = points[quads[0][0] as usize];
         quads.iter().map(|q| cone(at(*q).map(|p| sub(p, origin)))).sum::<f64>()
@@ -62,6 +63,7 @@ pub fn regions(name: &str, data: &MeshData) -> Result<Vec<Region>, RegionsError>
     let volumes: Vec<f64> = of_shell.iter().map(|quads| volume(quads)).collect();
     let triangles: Vec<Vec<[Vector; 3]>> =
         of_shell.iter().map(|quads| quads.iter().flat_map(|q| halves(at(*q))).collect()).collect();
+    // Of two shells, the two sides of one surface, none lies in the other.
     let holders = if shells.len() > 2 { holders(&triangles) } else { vec![Vec::new(); shells.len()] };
     let mut parts: BTreeMap<usize, Vec<usize>> =
         (0..shells.len()).filter(|&i| volumes[i] > 0.0).map(|i| (i, vec![i])).collect();
@@ -81,6 +83,8 @@ pub fn regions(name: &str, data: &MeshData) -> Result<Vec<Region>, RegionsError>
             continue;
         }
         let all: BTreeSet<u32> = sides.iter().copied().collect();
+        // Both sides of a face in one region: a wall that ends inside. Filled as it is, its quads would be glued to
+        // each other or left open.
         let baffles: Offenders<QuadId> =
             sides.iter().filter(|s| s.is_multiple_of(2) && all.contains(&(**s ^ 1))).map(|s| QuadId(s / 2)).collect();
         if !baffles.is_empty() {

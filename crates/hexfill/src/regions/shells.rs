@@ -47,6 +47,7 @@ pub(super) fn walls(data: &MeshData) -> (Vec<[u32; 4]>, Vec<bool>) {
                 index.insert(key, walls.len() - 1);
                 walls.len() - 1
             }
+            // Between two hexes of the file, and no face of it: nothing to see there.
             None => continue,
         };
         // Facets face out of their hex, which lies behind them.

@@ -175,6 +175,7 @@ impl Solid {
                     let share = self.share([polygon[i], polygon[k], polygon[j]], tag);
                     share.min(best[i * n + k].0).min(best[k * n + j].0)
                 };
+                // Also bad parts are kept: whether the whole can be cut is asked once, at the end.
                 let mut found = (f64::NEG_INFINITY, i + 1);
                 for k in i + 1..j {
                     let here = worst(k);
@@ -212,6 +213,9 @@ impl Solid {
             }
             inward = sub(inward, self.normals[*tag]);
         }
+        // The new tets stand on the polygons that close the boundary below the point. Where it has to go to make all
+        // of them positive depends on them: against the normals on a smooth part, towards its neighbours where the
+        // boundary bends in.
         let mut tets = self.star(v);
         tets.extend(faces.iter().map(|([a, b, c], _)| [v, *a, *b, *c]));
         let mut trial = tets.clone();

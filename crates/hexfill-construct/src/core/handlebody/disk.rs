@@ -149,6 +149,8 @@ fn disk_in_cover(
 ) -> Result<Option<Vec<DartId>>, ConstructError> {
     let s = &cutting.s;
     let first = s.vertex_darts();
+    // Loops that need the covering graph run through a prism, so they pass a corner of one: roots elsewhere would
+    // only find them later.
     let corners = cutting.prisms.iter().flat_map(|p| p.sides).flat_map(|g| s.sides(g));
     let mut roots: Vec<VertexId> = corners.map(|d| s.origin[d]).collect();
     roots.sort_unstable();
