@@ -107,7 +107,7 @@ pub(crate) fn catalog(py: Python<'_>, how: Run) -> PyResult<String> {
                 "vertices": problem.surface().n_vertices(),
                 "coordinates": problem.points().is_some(),
                 "source": entry.source,
-                "best": entry.best,
+                "best": entry.record.to_string(),
                 "mesh_hexes": entry.best_mesh().map(|m| m.hexes.len()),
                 "signature": surface_signature(problem.surface()),
             }));

@@ -3,7 +3,7 @@
 use crate::console::Console;
 use anyhow::{Context as _, Result, bail};
 use hexfill::Problem;
-use hexfill::io::{Format, MeshData};
+use hexfill::io::{Format, MeshData, WriteError};
 use std::path::Path;
 use std::time::Duration;
 
@@ -139,11 +139,8 @@ impl OutputArgs {
             console.note("--quadratic puts nodes in the middles of straight edges: nodes of the input between corners, which --linearise drops, do not come back");
         }
         let format = self.to.map_or_else(|| Format::from_path(Path::new(output)), Ok)?;
-        if self.quadratic && !format.holds_quadratic() {
-            bail!(
-                "{output}: {} has no cells of second order here; use .vtu, .vtk, .msh, .inp, .bdf or .unv, or leave out --quadratic",
-                format.title()
-            );
+        if self.quadratic {
+            WriteError::check_quadratic(format).with_context(|| output.to_owned())?;
         }
         Ok(())
     }
@@ -152,7 +149,7 @@ impl OutputArgs {
     pub(crate) fn check_mesh(&self, output: &str, surface: &MeshData) -> Result<()> {
         check_mesh_output(output, self.to, surface)?;
         if self.quadratic {
-            surface.clone().into_quadratic()?;
+            surface.check_straight()?;
         }
         Ok(())
     }

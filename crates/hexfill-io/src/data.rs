@@ -358,12 +358,8 @@ impl MeshData {
                 remedy: "write the surface alone, or use a mesh format such as .vtk, .vtu, .mesh or .msh".to_owned(),
             });
         }
-        if self.quadratic.is_some() && !format.holds_quadratic() {
-            return Err(WriteError::CannotHold {
-                format,
-                what: "cells of second order".to_owned(),
-                remedy: "use .vtu, .vtk, .msh, .inp, .bdf or .unv, or write straight cells".to_owned(),
-            });
+        if self.quadratic.is_some() {
+            WriteError::check_quadratic(format)?;
         }
         if !format.holds_polygons()
             && let Some(face) = self.other_faces.iter().find(|f| f.vertices.len() != 3)

@@ -199,6 +199,23 @@ pub enum WriteError {
     },
 }
 
+impl WriteError {
+    /// That a format has cells of second order.
+    ///
+    /// # Errors
+    /// [`WriteError::CannotHold`] if it has none.
+    pub fn check_quadratic(format: Format) -> Result<(), Self> {
+        if format.holds_quadratic() {
+            return Ok(());
+        }
+        Err(Self::CannotHold {
+            format,
+            what: "cells of second order".to_owned(),
+            remedy: "use .vtu, .vtk, .msh, .inp, .bdf or .unv, or write straight cells".to_owned(),
+        })
+    }
+}
+
 /// Why cells cannot become cells of second order.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]

@@ -35,13 +35,7 @@ impl MeshData {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn into_quadratic(mut self) -> Result<Self, QuadraticError> {
-        if !self.has_coordinates {
-            return Err(QuadraticError::NoCoordinates);
-        }
-        let others = self.tets.len() + self.wedges.len() + self.pyramids.len();
-        if self.other_faces.len() + others > 0 {
-            return Err(QuadraticError::OtherCells { faces: self.other_faces.len(), cells: others });
-        }
+        self.check_straight()?;
         let mut middles = Middles { node_of: FxHashMap::default(), ends: Vec::new(), first: self.points.len() };
         let quads = self.quads.iter().map(|quad| middles.with(*quad, QUAD_EDGES)).collect();
         let on_faces = middles.ends.len();
@@ -68,6 +62,21 @@ impl MeshData {
         }
         self.quadratic = Some(Quadratic { quads, hexes });
         Ok(self)
+    }
+
+    /// That there are coordinates and only quads and hexes, as [`MeshData::into_quadratic`] wants them.
+    ///
+    /// # Errors
+    /// [`QuadraticError`].
+    pub fn check_straight(&self) -> Result<(), QuadraticError> {
+        if !self.has_coordinates {
+            return Err(QuadraticError::NoCoordinates);
+        }
+        let others = self.tets.len() + self.wedges.len() + self.pyramids.len();
+        if self.other_faces.len() + others > 0 {
+            return Err(QuadraticError::OtherCells { faces: self.other_faces.len(), cells: others });
+        }
+        Ok(())
     }
 }
 

@@ -1,5 +1,5 @@
 //! Other programs read what is written here, and what they write is read here: meshio, PyVista (VTK) and Gmsh, from PyPI,
-//! in a virtual environment under the target directory. The work on their side is in `foreign_readers.py`.
+//! in a virtual environment under the target directory. The work on their side is in `foreign_readers.py` and `foreign_writers.py`.
 //!
 //! Skipped, with the reason printed, only where the packages cannot be installed; `HEXFILL_FOREIGN=require` makes that a
 //! failure, `HEXFILL_FOREIGN=skip` skips. Gmsh needs some X libraries (see the message it gives).
@@ -36,9 +36,9 @@ fn python() -> Result<PathBuf, String> {
     Ok(python)
 }
 
-fn script(python: &Path, mode: &str, directory: &Path) -> String {
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests").join("foreign_readers.py");
-    match run(Command::new(python).arg(script).arg(mode).arg(directory)) {
+fn script(python: &Path, name: &str, directory: &Path) -> String {
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests").join(name);
+    match run(Command::new(python).arg("-B").arg(script).arg(directory)) {
         Ok(output) => String::from_utf8_lossy(&output.stdout).into_owned(),
         Err(e) => panic!("{e}"),
     }
@@ -96,7 +96,7 @@ fn other_programs_agree() {
     let _ = std::fs::remove_dir_all(&directory);
     std::fs::create_dir_all(&directory).unwrap();
     write_all(&directory);
-    let report = script(&python, "check", &directory);
+    let report = script(&python, "foreign_readers.py", &directory);
     print!("{report}");
     let checks = report.lines().filter(|l| l.starts_with("ok ")).count();
     assert!(checks >= 40, "only {checks} files were read by other programs");
@@ -104,7 +104,7 @@ fn other_programs_agree() {
     let theirs = directory.join("theirs");
     std::fs::create_dir_all(&theirs).unwrap();
     std::fs::copy(directory.join("expected.json"), theirs.join("expected.json")).unwrap();
-    let list = script(&python, "write", &theirs);
+    let list = script(&python, "foreign_writers.py", &theirs);
     let count = common::compare_list(&theirs, &list);
     println!("{count} files of other programs were read");
     assert!(count >= 25, "{list}");

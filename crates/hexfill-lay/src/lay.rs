@@ -90,11 +90,11 @@ impl<'a> Filled<'a> {
     fn new(open: &'a OpenMesh, number: u64, most: f64, ctx: &Context<'_>) -> Option<Self> {
         let patch = Patch::round(open);
         let most = patch.n_hexes() + (most * open.front.len() as f64) as usize;
-        let laying = to_the_end(patch.laying(open), ctx.seed + number, most, ctx)?;
-        let mesh = HexMesh::try_new(laying.points.len(), &laying.hexes).ok()?;
-        let invalid = laying.forgiven.len();
+        let Laying { open: full, pillows, .. } =
+            to_the_end(Laying::new(patch.cut_out(open)), ctx.seed + number, most, ctx)?;
+        let mesh = HexMesh::try_new(full.points.len(), &full.hexes).ok()?;
         // The pillow under the surface is the first.
-        let laid = LaidMesh { mesh, points: laying.points, invalid, pillows: 1 + laying.pillows };
+        let laid = LaidMesh { mesh, points: full.points, invalid: full.forgiven.len(), pillows: 1 + pillows };
         Some(Self { open, patch, laid })
     }
 
@@ -118,12 +118,12 @@ fn to_the_end(mut laying: Laying, seed: u64, most: usize, ctx: &Context<'_>) -> 
     let mut underway = next_plan(&laying, seed, &mut plans, ctx)?;
     // Pillows since the last hex; a new plan begins right behind one.
     let mut jams = 1;
-    while !laying.front.is_empty() {
-        if ctx.stop().is_some() || laying.hexes.len() > most {
+    while !laying.open.front.is_empty() {
+        if ctx.stop().is_some() || laying.open.hexes.len() > most {
             return None;
         }
-        ctx.report("laying", laying.hexes.len() as u64, None, || {
-            format!("{} hexes laid, {} quads open", laying.hexes.len(), laying.front.len())
+        ctx.report("laying", laying.open.hexes.len() as u64, None, || {
+            format!("{} hexes laid, {} quads open", laying.open.hexes.len(), laying.open.front.len())
         });
         // Hexes that make the front grow only once a pillow has not helped.
         if !underway.is_over() && laying.lay_one(&mut underway, jams > 0, ctx) {

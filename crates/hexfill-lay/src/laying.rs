@@ -2,10 +2,10 @@
 //!
 //! Source: ours; why room can be made: Barnette 1970, and the pillows of Mitchell, Tautges 1995.
 
-use crate::open_mesh::without;
+use crate::open_mesh::OpenMesh;
 use crate::plan::Plan;
 use crate::void_front::{NOT_YET, VoidFront, advanced};
-use hexfill_embed::{Open, OpenEffort};
+use hexfill_embed::OpenEffort;
 use hexfill_geometry::Vector;
 use hexfill_mesh::cube::CORNER_NEIGHBOURS;
 use hexfill_mesh::{Context, QuadSurface};
@@ -35,20 +35,11 @@ const fn effort(rounds: usize, iterations: usize, extra: usize) -> OpenEffort {
     OpenEffort { rounds, iterations, extra }
 }
 
-/// Hexes, positions, front. Invariant between calls: every hex that is not forgiven is valid in floating point, and so is every pyramid over the front.
+/// What is laid so far. Invariant between calls: every hex that is not forgiven is valid in floating point, and so is every pyramid over the front.
 #[derive(Clone, Debug)]
 pub(crate) struct Laying {
-    pub(crate) hexes: Vec<[u32; 8]>,
-    pub(crate) points: Vec<Vector>,
-    /// Quads counter-clockwise seen from outside of the void.
-    pub(crate) front: Vec<[u32; 4]>,
+    pub(crate) open: OpenMesh,
     pub(crate) pillows: u32,
-    /// Hexes, ascending, that nothing looks at: the surface leaves no room for them.
-    pub(crate) forgiven: Vec<u32>,
-    /// The first vertices, which stay.
-    n_fixed: usize,
-    /// Inside the void.
-    apex: Vector,
     /// Hexes of the plan since all was rounded.
     since: usize,
 }
@@ -71,21 +62,14 @@ impl Underway {
 }
 
 impl Laying {
-    /// Hexes round a void; the first `n_fixed` vertices stay.
-    pub(crate) fn new(
-        hexes: Vec<[u32; 8]>,
-        points: Vec<Vector>,
-        front: Vec<[u32; 4]>,
-        apex: Vector,
-        forgiven: Vec<u32>,
-        n_fixed: usize,
-    ) -> Self {
-        Self { hexes, points, front, pillows: 0, forgiven, n_fixed, apex, since: 0 }
+    /// Nothing laid yet.
+    pub(crate) fn new(open: OpenMesh) -> Self {
+        Self { open, pillows: 0, since: 0 }
     }
 
     /// A plan for the void as it is; `None` if its front is no proper sphere, or no hex was found.
     pub(crate) fn planned(&self, number: u64, ctx: &Context<'_>) -> Option<Underway> {
-        let (surface, vertices) = QuadSurface::on_own_vertices(self.front.clone()).ok()?;
+        let (surface, vertices) = QuadSurface::on_own_vertices(self.open.front.clone()).ok()?;
         let plan = surface.is_sphere().then(|| Plan::new(&surface, number, ctx)).flatten()?;
         let mut ids: Vec<u32> = vertices.into_iter().map(|v| v.0).collect();
         ids.resize(plan.n_vertices, NOT_YET);
@@ -120,7 +104,7 @@ impl Laying {
 
     /// The hexes of the plan that could be laid now, with the facets that lie on the front.
     fn candidates(&self, underway: &Underway, any: bool) -> Vec<(u32, u8)> {
-        let sets = VoidFront::new(&self.front);
+        let sets = VoidFront::new(&self.open.front);
         let laid = |h: u32| underway.plan.hexes[h as usize].map(|v| underway.ids[v as usize]);
         let legal = underway.rest.iter().filter_map(|&h| sets.covered_by(&laid(h)).map(|covered| (h, covered)));
         let (mut many, few): (Vec<_>, Vec<_>) = legal.partition(|(_, covered)| covered.count_ones() >= MANY);
@@ -141,7 +125,7 @@ impl Laying {
             if laid[corner] != NOT_YET {
                 continue;
             }
-            let at = |k: usize| (laid[k] != NOT_YET).then(|| self.points[laid[k] as usize]);
+            let at = |k: usize| (laid[k] != NOT_YET).then(|| self.open.points[laid[k] as usize]);
             let mut near: Vec<Vector> = CORNER_NEIGHBOURS[corner].iter().filter_map(|&k| at(k)).collect();
             // All three neighbours are new as well; they come later in this loop.
             if near.is_empty() {
@@ -149,12 +133,12 @@ impl Laying {
             }
             let n = near.len() as f64;
             let mean: Vector = std::array::from_fn(|axis| near.iter().map(|p| p[axis]).sum::<f64>() / n);
-            laid[corner] = self.points.len() as u32;
+            laid[corner] = self.open.points.len() as u32;
             ids[hex[corner] as usize] = laid[corner];
-            self.points.push(towards(mean, self.apex, INWARD));
+            self.open.points.push(towards(mean, self.open.apex, INWARD));
         }
-        self.front = advanced(&self.front, &laid, covered);
-        self.hexes.push(laid);
+        self.open.front = advanced(&self.open.front, &laid, covered);
+        self.open.hexes.push(laid);
     }
 
     /// Untangles round the last hex, with so many rings free. Whether that made everything valid.
@@ -173,7 +157,7 @@ impl Laying {
         for height in HEIGHTS {
             let mut trial = self.clone();
             let copies = trial.put_pillow(height);
-            let free = trial.all();
+            let free = trial.open.inner();
             let bad = trial.untangle(&free, JUDGE, ctx);
             if best.as_ref().is_none_or(|(least, ..)| bad < *least) {
                 best = Some((bad, trial, copies));
@@ -184,11 +168,11 @@ impl Laying {
         }
         let Some((bad, pillowed, copies)) = best else { return };
         *self = pillowed;
-        let free = self.all();
+        let free = self.open.inner();
         for _ in 0..ROUNDINGS {
-            let before = self.points.clone();
+            let before = self.open.points.clone();
             if self.untangle(&free, ROUND_PILLOW, ctx) > bad {
-                self.points = before;
+                self.open.points = before;
                 break;
             }
         }
@@ -200,16 +184,16 @@ impl Laying {
     /// One hex behind every quad of the front, its inner side by a share of the way further in. Returns the copies of the vertices.
     fn put_pillow(&mut self, height: f64) -> FxHashMap<u32, u32> {
         let mut copies: FxHashMap<u32, u32> = FxHashMap::default();
-        for quad in &mut self.front {
+        for quad in &mut self.open.front {
             let outer = *quad;
             *quad = outer.map(|v| {
                 *copies.entry(v).or_insert_with(|| {
-                    self.points.push(towards(self.points[v as usize], self.apex, height));
-                    self.points.len() as u32 - 1
+                    self.open.points.push(towards(self.open.points[v as usize], self.open.apex, height));
+                    self.open.points.len() as u32 - 1
                 })
             });
             let [a, b, c, d] = *quad;
-            self.hexes.push([a, b, c, d, outer[0], outer[1], outer[2], outer[3]]);
+            self.open.hexes.push([a, b, c, d, outer[0], outer[1], outer[2], outer[3]]);
         }
         self.pillows += 1;
         self.since = 0;
@@ -219,40 +203,38 @@ impl Laying {
     /// Rounds everything after some hexes, unless that makes a cell bad.
     fn round_now_and_then(&mut self, ctx: &Context<'_>) {
         self.since += 1;
-        if !self.since.is_multiple_of(ROUNDED) || self.front.is_empty() {
+        if !self.since.is_multiple_of(ROUNDED) || self.open.front.is_empty() {
             return;
         }
-        let before = self.points.clone();
-        let free = self.all();
+        let before = self.open.points.clone();
+        let free = self.open.inner();
         if self.untangle(&free, ROUND_ALL, ctx) != [0, 0] {
-            self.points = before;
+            self.open.points = before;
         }
     }
 
-    /// Moves the free vertices. Returns the hexes and the pyramids at them that are not valid.
     fn untangle(&mut self, free: &[bool], effort: OpenEffort, ctx: &Context<'_>) -> [usize; 2] {
-        let quiet = Context { progress: None, ..*ctx };
-        let looked_at = without(&self.hexes, &self.forgiven);
-        Open { hexes: &looked_at, front: &self.front, apex: self.apex }.untangle(free, &mut self.points, effort, &quiet)
-    }
-
-    fn all(&self) -> Vec<bool> {
-        (0..self.points.len()).map(|v| v >= self.n_fixed).collect()
+        self.open.untangle(free, effort, &Context { progress: None, ..*ctx })
     }
 
     /// The vertices within so many rings of cells round the last hex, but for those of the surface.
     fn near_last(&self, rings: usize) -> Vec<bool> {
-        let mut near = vec![false; self.points.len()];
-        self.hexes.last().into_iter().flatten().for_each(|&v| near[v as usize] = true);
+        let mut near = vec![false; self.open.points.len()];
+        self.open.hexes.last().into_iter().flatten().for_each(|&v| near[v as usize] = true);
         for _ in 0..rings {
             let before = near.clone();
             // The front's quads are cells too: the pyramids over them have to stay valid.
-            let cells = self.hexes.iter().map(<[u32; 8]>::as_slice).chain(self.front.iter().map(<[u32; 4]>::as_slice));
+            let cells = self
+                .open
+                .hexes
+                .iter()
+                .map(<[u32; 8]>::as_slice)
+                .chain(self.open.front.iter().map(<[u32; 4]>::as_slice));
             for cell in cells.filter(|cell| cell.iter().any(|&v| before[v as usize])) {
                 cell.iter().for_each(|&v| near[v as usize] = true);
             }
         }
-        near[..self.n_fixed].fill(false);
+        near[..self.open.n_fixed].fill(false);
         near
     }
 }

@@ -22,19 +22,19 @@ const HEXES_A_QUAD: usize = 5;
 /// How long the untangler tries.
 const EFFORT: OpenEffort = OpenEffort { rounds: 100, iterations: 200, extra: 2 };
 
-/// Hexes from a surface inward, their positions, and what is open.
+/// Hexes round a void, their positions, and what is open.
 #[derive(Clone, Debug)]
 pub(crate) struct OpenMesh {
-    /// The surface's vertices come first.
     pub(crate) hexes: Vec<[u32; 8]>,
+    /// Those that stay come first: the surface's, and in a patch those of hexes outside.
     pub(crate) points: Vec<Vector>,
+    pub(crate) n_fixed: usize,
     /// Quads counter-clockwise seen from outside of the void.
     pub(crate) front: Vec<[u32; 4]>,
     /// Inside the void, which it sees all of.
     pub(crate) apex: Vector,
     /// Hexes, ascending, for which the surface leaves no room: they wait for a second edge at its vertices, and nothing looks at them.
     pub(crate) forgiven: Vec<u32>,
-    pub(crate) n_surface: usize,
 }
 
 /// The best that sweeps with other ties leave, fewest forgiven hexes first, then fewest hexes as far as one can tell; none if no void can be held open.
@@ -67,8 +67,8 @@ impl OpenMesh {
     fn placed(swept: Swept, surface: &[Vector], ctx: &Context<'_>) -> Option<Self> {
         let Swept { hexes, front, n_vertices, .. } = swept;
         let (points, apex) = open_start(&hexes, &front, n_vertices as usize, surface);
-        let mut open = Self { hexes, points, front, apex, forgiven: Vec::new(), n_surface: surface.len() };
-        let [bad, pyramids] = open.untangle(ctx);
+        let mut open = Self { hexes, points, n_fixed: surface.len(), front, apex, forgiven: Vec::new() };
+        let [bad, pyramids] = open.untangle(&open.inner(), EFFORT, ctx);
         // A pyramid that is not valid means that the apex does not see all of the void: no pillow could be put in
         // later, and laying could not go on.
         if pyramids > 0 || bad * FEW > surface.len() {
@@ -76,7 +76,7 @@ impl OpenMesh {
         }
         if bad > 0 {
             open.forgive();
-            if open.untangle(ctx) != [0, 0] {
+            if open.untangle(&open.inner(), EFFORT, ctx) != [0, 0] {
                 return None;
             }
         }
@@ -92,16 +92,20 @@ impl OpenMesh {
         }
     }
 
-    /// Moves all vertices but those of the surface. Returns the hexes and the pyramids that are not valid.
-    fn untangle(&mut self, ctx: &Context<'_>) -> [usize; 2] {
-        let free: Vec<bool> = (0..self.points.len()).map(|v| v >= self.n_surface).collect();
+    /// Per vertex whether it may move.
+    pub(crate) fn inner(&self) -> Vec<bool> {
+        (0..self.points.len()).map(|v| v >= self.n_fixed).collect()
+    }
+
+    /// Moves the free vertices. Returns the hexes and the pyramids at them that are not valid.
+    pub(crate) fn untangle(&mut self, free: &[bool], effort: OpenEffort, ctx: &Context<'_>) -> [usize; 2] {
         let looked_at = without(&self.hexes, &self.forgiven);
-        Open { hexes: &looked_at, front: &self.front, apex: self.apex }.untangle(&free, &mut self.points, EFFORT, ctx)
+        Open { hexes: &looked_at, front: &self.front, apex: self.apex }.untangle(free, &mut self.points, effort, ctx)
     }
 }
 
 /// Hexes but for those with some numbers, which ascend.
-pub(crate) fn without<'a>(hexes: &'a [[u32; 8]], numbers: &[u32]) -> Cow<'a, [[u32; 8]]> {
+fn without<'a>(hexes: &'a [[u32; 8]], numbers: &[u32]) -> Cow<'a, [[u32; 8]]> {
     if numbers.is_empty() {
         return Cow::Borrowed(hexes);
     }

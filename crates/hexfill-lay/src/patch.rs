@@ -2,7 +2,6 @@
 //!
 //! Source: ours.
 
-use crate::laying::Laying;
 use crate::open_mesh::OpenMesh;
 use hexfill_geometry::Vector;
 use hexfill_mesh::HexMesh;
@@ -38,7 +37,7 @@ impl Patch {
             }
         }
         let mut stays = vec![false; n];
-        stays[..open.n_surface].fill(true);
+        stays[..open.n_fixed].fill(true);
         let mut used = vec![false; n];
         for (hex, &is_in) in open.hexes.iter().zip(&inside) {
             let marks = if is_in { &mut used } else { &mut stays };
@@ -53,26 +52,22 @@ impl Patch {
         Self { inside, ids, n_fixed }
     }
 
-    /// Where hexes are laid: the patch and the void.
-    pub(crate) fn laying(&self, open: &OpenMesh) -> Laying {
+    /// The patch alone round its void.
+    pub(crate) fn cut_out(&self, open: &OpenMesh) -> OpenMesh {
         let mut own = vec![u32::MAX; open.points.len()];
         (0..).zip(&self.ids).for_each(|(own_id, &v)| own[v as usize] = own_id);
         let numbers = (0..open.hexes.len() as u32).filter(|&h| self.inside[h as usize]);
         let forgiven =
             (0..).zip(numbers).filter(|(_, h)| open.forgiven.binary_search(h).is_ok()).map(|(own_id, _)| own_id);
-        Laying::new(
-            open.hexes
-                .iter()
-                .zip(&self.inside)
-                .filter(|(_, is_in)| **is_in)
-                .map(|(hex, _)| hex.map(|v| own[v as usize]))
-                .collect(),
-            self.ids.iter().map(|&v| open.points[v as usize]).collect(),
-            open.front.iter().map(|q| q.map(|v| own[v as usize])).collect(),
-            open.apex,
-            forgiven.collect(),
-            self.n_fixed,
-        )
+        let hexes = open.hexes.iter().zip(&self.inside).filter(|(_, is_in)| **is_in).map(|(hex, _)| hex);
+        OpenMesh {
+            hexes: hexes.map(|hex| hex.map(|v| own[v as usize])).collect(),
+            points: self.ids.iter().map(|&v| open.points[v as usize]).collect(),
+            n_fixed: self.n_fixed,
+            front: open.front.iter().map(|q| q.map(|v| own[v as usize])).collect(),
+            apex: open.apex,
+            forgiven: forgiven.collect(),
+        }
     }
 
     pub(crate) fn n_hexes(&self) -> usize {
@@ -98,7 +93,7 @@ impl Patch {
         hexes.extend(mesh.hexes_raw().iter().map(|hex| hex.map(place)));
         let at = |v: u32| if v < n { open.points[v as usize] } else { points[(v - n) as usize] };
         // Vertices in their old order, without those of no hex.
-        let mut kept: Vec<u32> = (0..open.n_surface as u32).chain(hexes.iter().flatten().copied()).collect();
+        let mut kept: Vec<u32> = (0..open.n_fixed as u32).chain(hexes.iter().flatten().copied()).collect();
         kept.sort_unstable();
         kept.dedup();
         let mut name = vec![u32::MAX; n as usize + points.len()];
@@ -139,8 +134,8 @@ mod tests {
         });
         let gone = hexes.remove(middle.unwrap());
         let front = FACETS.map(|f| f.map(|i| gone[i])).to_vec();
-        let n_surface = on.iter().filter(|on| **on).count();
-        (OpenMesh { hexes, points, front, apex: centre.map(|x| x + 0.5), forgiven: Vec::new(), n_surface }, gone)
+        let n_fixed = on.iter().filter(|on| **on).count();
+        (OpenMesh { hexes, points, front, apex: centre.map(|x| x + 0.5), forgiven: Vec::new(), n_fixed }, gone)
     }
 
     #[test]
@@ -149,15 +144,15 @@ mod tests {
         let patch = Patch::round(&open);
         // Four rings round a cube, and what lies on their outside stays.
         assert_eq!((patch.n_hexes(), patch.n_fixed()), (9 * 9 * 9 - 1, 1000 - 512));
-        let laying = patch.laying(&open);
-        assert_eq!(laying.hexes.len(), patch.n_hexes());
-        let mut hexes = laying.hexes.clone();
+        let cut = patch.cut_out(&open);
+        assert_eq!(cut.hexes.len(), patch.n_hexes());
+        let mut hexes = cut.hexes.clone();
         let own = |v: u32| patch.ids.iter().position(|&id| id == v).unwrap() as u32;
         hexes.push(gone.map(own));
-        let mesh = HexMesh::try_new(laying.points.len(), &hexes).unwrap();
-        let (whole, points) = patch.put_back(&open, &mesh, &laying.points).unwrap();
+        let mesh = HexMesh::try_new(cut.points.len(), &hexes).unwrap();
+        let (whole, points) = patch.put_back(&open, &mesh, &cut.points).unwrap();
         assert_eq!((whole.n_hexes(), points.len()), (N * N * N, open.points.len()));
-        assert_eq!(points[..open.n_surface], open.points[..open.n_surface]);
+        assert_eq!(points[..open.n_fixed], open.points[..open.n_fixed]);
         for hex in whole.hexes_raw() {
             let at = |k: usize| points[hex[k] as usize];
             for (k, neighbours) in CORNER_NEIGHBOURS.iter().enumerate() {

@@ -9,6 +9,7 @@
 //! Source: Smith 1938 (the fixed points of an involution); the two rules are ours.
 
 use crate::state::MAX_VERTICES;
+use hexfill_mesh::{Forest, VertexId};
 
 /// A mirror of a group, and the vertices strictly on each of its sides.
 #[derive(Clone, Copy, Debug)]
@@ -40,11 +41,7 @@ impl Sides {
 
 /// The sides of the sphere that an automorphism exchanges; `None` if it is no mirror.
 pub(crate) fn halves(quads: &[[u8; 4]], image: &[u8]) -> Option<[u128; 2]> {
-    let mut half: Vec<usize> = (0..image.len()).collect();
-    let mut join = |u: u8, v: u8| {
-        let [a, b] = [u, v].map(|w| half[usize::from(w)]);
-        half.iter_mut().filter(|h| **h == a).for_each(|h| *h = b);
-    };
+    let mut forest: Forest<VertexId> = Forest::new(image.len());
     let moved = |v: u8| image[usize::from(v)] != v;
     for quad in quads {
         let kept = quad.iter().all(|v| quad.contains(&image[usize::from(*v)]));
@@ -54,11 +51,12 @@ pub(crate) fn halves(quads: &[[u8; 4]], image: &[u8]) -> Option<[u128; 2]> {
                 // The mirror passes through a quad that it keeps, and through an edge that it turns.
                 let parted = kept && (j == k + 2 || image[usize::from(u)] == v);
                 if moved(u) && moved(v) && !parted {
-                    join(u, v);
+                    forest.union(VertexId(u.into()), VertexId(v.into()));
                 }
             }
         }
     }
+    let half = forest.names().into_vec();
     let mut sides = [0u128; 2];
     let first = half[(0..image.len()).find(|&v| moved(v as u8))?];
     for v in (0..image.len()).filter(|&v| moved(v as u8)) {

@@ -149,4 +149,13 @@ mod tests {
         assert_eq!(Scale::new("x", &[2.0]).colour(2.0), sample(&GROWTH, 0.5));
         assert_eq!(Scale::new("x", &[]).low, 0.0);
     }
+
+    #[test]
+    fn categories_are_those_of_the_viewer() {
+        let viewer = include_str!("../viewer/src/colour.ts");
+        let list = CATEGORIES.map(|[r, g, b]| format!("[{r}, {g}, {b}]"));
+        let listed: String =
+            viewer.split("const CATEGORIES").nth(1).unwrap().split("];").next().unwrap().split_whitespace().collect();
+        assert!(listed.ends_with(&format!("[{},", list.join(",").replace(' ', ""))), "{listed}");
+    }
 }

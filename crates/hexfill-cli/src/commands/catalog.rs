@@ -40,7 +40,7 @@ struct Shown {
     vertices: usize,
     coordinates: bool,
     source: &'static str,
-    best: &'static str,
+    best: String,
     mesh_hexes: Option<usize>,
     signature: String,
 }
@@ -55,7 +55,7 @@ fn describe(entry: &Entry) -> anyhow::Result<Shown> {
         vertices: problem.surface().n_vertices(),
         coordinates: problem.points().is_some(),
         source: entry.source,
-        best: entry.best,
+        best: entry.record.to_string(),
         mesh_hexes: entry.best_mesh().map(|m| m.hexes.len()),
         signature: hexfill::mesh::surface_signature(problem.surface()),
     })

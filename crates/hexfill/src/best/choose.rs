@@ -252,7 +252,7 @@ impl<'a> Trial<'a> {
         Ok(why_none)
     }
 
-    /// Lays hexes one by one if no mesh has valid positions yet, on spheres that an apex may hold open.
+    /// Lays hexes one by one if no mesh has valid positions yet, in the one void that a sweep leaves.
     fn lay(&mut self) -> Result<(), FillError> {
         let surface = &self.problem.surface;
         let is_worth = matches!(self.class(), None | Some(2)) && surface.n_quads() <= MOST_LAID;
