@@ -1,4 +1,6 @@
 //! The verbs: coordinates for a mesh, a start, and bounds.
+//!
+//! Source: ours: which steps, in which order (book, page `embedding`, "The way of a mesh").
 
 use crate::bounds::{StarBound, least_bound, refine_stars, star_bounds_of};
 use crate::error::EmbedError;

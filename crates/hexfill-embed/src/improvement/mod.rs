@@ -13,6 +13,8 @@
 //!
 //! `edge_floors` keeps edges from vanishing; `each_patch` does patches at the same time. Every step is kept only if the worst value
 //! over whole cells rises.
+//!
+//! Source: each file names its own.
 
 mod barrier;
 mod each_patch;

@@ -1,4 +1,6 @@
 //! Linear programs in patches round the worst cells, for meshes too large for one program.
+//!
+//! Source: ours, with the programs of Madsen 1975.
 
 use super::each_patch::improve_each;
 use super::goal::Goal;
@@ -81,6 +83,7 @@ pub(crate) fn climb_worst(
         context.report("optimise patches", round as u64, Some(rounds as u64), || {
             format!("worst {:.6}, {seeds} cells in {} patches", cells.worst, parts.len())
         });
+        // A patch sees everything its vertices can spoil, so what is better in it is not worse outside.
         improve_each(&parts, points, context, |part, points, context| {
             let limits = ProgramLimits { iterations: 25, band: 0.2, tolerance: 1e-6 };
             climb(&part.problem, points, Goal::ScaledJacobian { target }, limits, context);

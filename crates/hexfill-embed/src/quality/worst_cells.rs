@@ -1,4 +1,6 @@
 //! The worst scaled Jacobian of every cell, over the whole cell, as closely as is asked for.
+//!
+//! Source: ours, on the bisection of Johnen, Weill, Remacle 2017.
 
 use crate::cell::bisection::Sign;
 use crate::cell::condition::log_condition;

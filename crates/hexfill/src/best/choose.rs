@@ -3,6 +3,8 @@
 //! Engines in this order, the next only if none before brought a good mesh: atlas and shelling, inward flips, construction.
 //! The order of meshes: certified ones first, then those whose worst scaled Jacobian is at least [`GOOD`], then fewest
 //! hexes for their quality ([`Prefer`]).
+//!
+//! Source: ours; measured in `record/embed-2026-11-21.md` and `record/shelling-2026-11-22.md`.
 
 use crate::best::budget::Budget;
 use crate::best::choice::{Candidate, Choice, Outcome};
