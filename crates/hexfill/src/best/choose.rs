@@ -223,7 +223,9 @@ impl<'a> Trial<'a> {
         }
         let none_valid = no_room(&self.problem.surface, self.boundary).map(|why| format!("none can be valid: {why}"));
         let why_none = none_valid.or_else(|| match self.hopeless() {
-            Some(Hopeless::Crosses(why)) => Some(format!("{why} (--best goes on all the same)")),
+            Some(Hopeless::Crosses(why) | Hopeless::Folded(why)) => {
+                Some(format!("{why} (--best goes on all the same)"))
+            }
             _ => None,
         });
         // The atlas has many fillings of the smallest surfaces, with fewer hexes than can be laid.
