@@ -5,6 +5,8 @@
 //! vertex that is fixed, of radius R round it, what is at distance r goes to `R (r/R)^gamma` with gamma below 1. That multiplies the logarithm of
 //! the ratio of sizes by gamma and makes a small cell flatter by 1/gamma, no more, whatever its size; the cells that it makes poor are lifted again, and so on.
 //! Minimising an energy of sizes instead, inside a barrier on scaled Jacobians, was tried and hardly moved: the whole nest must grow at once.
+//!
+//! Source: ours.
 
 use super::edge_floors::EdgeFloors;
 use super::patch_barriers::{lift_poor_cells, visits};
