@@ -1,4 +1,6 @@
 //! Inside or outside: solid angles, winding numbers, and which of several closed surfaces lies in which.
+//!
+//! Source: van Oosterom, Strackee 1983 (the solid angle of a triangle).
 
 use crate::vector::{Vector, det, dot, norm, sub};
 use std::f64::consts::TAU;

@@ -1,4 +1,6 @@
 //! [`LaidMesh`]: what laying makes.
+//!
+//! Source: ours.
 
 use hexfill_geometry::Vector;
 use hexfill_mesh::HexMesh;

@@ -1,4 +1,6 @@
 //! [`Goal`]: what linear programs improve.
+//!
+//! Source: ours.
 
 /// What is improved.
 #[derive(Clone, Copy, Debug, PartialEq)]

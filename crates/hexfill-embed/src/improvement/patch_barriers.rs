@@ -5,6 +5,8 @@
 //! cells are good, and the patches are independent. A patch is written back only if its worst value over
 //! whole cells rose, as judged by bisection. Then tau is raised, as long as the worst value follows. All bounds are counts, so
 //! the result does not depend on the machine or the threads; the work is about linear in the number of poor cells.
+//!
+//! Source: ours, with the barriers of Fiacco, McCormick 1968.
 
 use super::barrier::{Barrier, Descent, Penalty};
 use super::edge_floors::EdgeFloors;

@@ -1,4 +1,6 @@
 //! Linear programs in patches round the worst cells, for meshes too large for one program.
+//!
+//! Source: ours, with the programs of Madsen 1975.
 
 use super::each_patch::improve_each;
 use super::goal::Goal;
@@ -93,6 +95,7 @@ pub(crate) fn climb_worst(
             return None;
         }
         large_variables += wanted;
+        // A patch sees everything its vertices can spoil, so what is better in it is not worse outside.
         improve_each(&parts, points, context, |part, points, context| {
             let limits = ProgramLimits { iterations: 25, band: 0.2, tolerance: 1e-6 };
             climb(&part.problem, points, Goal::ScaledJacobian { target }, limits, context);

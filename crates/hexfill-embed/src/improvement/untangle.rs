@@ -5,6 +5,8 @@
 //! with F before and F' after a minimisation, `sigma = max(1 - F'/F, 1/10)`, `mu = (1 - sigma) chi(eps, Dmin)`, and the
 //! next eps is `2 sqrt(mu (mu - Dmin))` while `Dmin < mu`, else tiny. When all terms are positive the cells are put
 //! to the Bernstein test, and the mixed determinants of the cells that fail it join the energy.
+//!
+//! Source: Garanzha et al. 2021; the Bernstein test at the end is ours, after Johnen, Weill, Remacle 2017.
 
 use super::foldover_free_energy::{Energy, chi};
 use crate::cell::bisection::Sign;

@@ -1,6 +1,8 @@
 //! Surfaces on which the search for a good mesh is in vain: they cross themselves, or their own angles forbid one. Of each candidate they get
 //! one embedding; where they cross themselves, or quads lie on each other, they get no candidates beyond the first engine that brings a mesh. Counts bound the work, not a
 //! clock, so that the mesh is the same every time.
+//!
+//! Source: ours.
 
 use crate::doctor::crossings::crossing_quads;
 use crate::problem::Problem;

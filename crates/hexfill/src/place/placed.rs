@@ -1,4 +1,6 @@
 //! [`Placed`]: positions with the judge's verdict on every hex.
+//!
+//! Source: ours.
 
 use crate::place::report::GeometryReport;
 use hexfill_check::{CellQuality, Judged, cell_quality};

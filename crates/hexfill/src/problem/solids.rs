@@ -1,5 +1,7 @@
 //! Surfaces of several components: which lies inside which. A solid is a component that faces outward with the cavities in it; an island in a
 //! cavity is a solid of its own.
+//!
+//! Source: ours.
 
 use hexfill_geometry::halves;
 use hexfill_mesh::{QuadId, QuadSurface, VertexId};
