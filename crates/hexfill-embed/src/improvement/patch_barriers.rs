@@ -109,7 +109,7 @@ pub(crate) fn lift_poor_cells(
         let parts = patches(problem, incidence, &seeds, pace.rings);
         let size: usize = parts.iter().map(|part| part.problem.hexes.len()).sum();
         context.report("lift", pass as u64, None, || {
-            format!("worst {worst:.6}, {} cells below {tau:.4}, {} patches of {size} cells", seeds.len(), parts.len())
+            format!("worst scaled Jacobian {worst:.6}, {} hexes to be lifted above {tau:.4}", seeds.len())
         });
         // A bound on work and not on time, or the result would depend on the machine.
         if size > *visits {

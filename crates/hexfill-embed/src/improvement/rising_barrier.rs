@@ -58,7 +58,7 @@ pub(crate) fn follow_worst(
             return None;
         }
         context.report("optimise", round as u64, Some(limits.rounds as u64), || {
-            format!("worst scaled Jacobian {worst:.6}, width {}, gap {gap:.3}", WIDTHS[level])
+            format!("worst scaled Jacobian {worst:.6}, at best {target:.6}")
         });
         let width = WIDTHS[level];
         // The level stays below the worst by a share of the width, or of the worst itself.

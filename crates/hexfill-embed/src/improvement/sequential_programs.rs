@@ -69,9 +69,9 @@ pub(crate) fn climb(
         iterations += 1;
         let before = climber.value;
         match climber.step(points) {
-            Turn::Moved => context.report("optimise", iterations as u64, Some(limits.iterations as u64), || {
-                format!("{goal:?}, now {before:.6}")
-            }),
+            Turn::Moved => {
+                context.report("optimise", iterations as u64, Some(limits.iterations as u64), || goal.progress(before))
+            }
             Turn::Again => {}
             Turn::End => break,
         }

@@ -63,7 +63,7 @@ pub(crate) fn untangle(
         let (after, stopped) = minimise_energy(&mut energy, &mut x, points, limits, &mut spent, context);
         smallest = energy.smallest_determinant(points);
         context.report("untangle", round as u64, Some(limits.rounds as u64), || {
-            format!("smallest determinant {smallest:.3e} at eps {:.3e}", energy.epsilon)
+            format!("smallest determinant {smallest:.3e}, valid when positive")
         });
         // Positive terms are positive corners; the Bernstein form says whether the cells are positive inside, too.
         if smallest > 0.0 {
