@@ -3,6 +3,7 @@
 //! Source: ours.
 
 use hexfill_mesh::{HexId, HexMesh};
+use hexfill_shell::Stage;
 use serde::{Serialize, Serializer};
 use std::fmt;
 
@@ -105,9 +106,17 @@ impl Maker {
         }
     }
 
-    /// A stage of the shelling by its name.
-    pub(crate) fn of_stage(name: &str) -> Self {
-        Self::ALL[Self::Grid as usize..].iter().copied().find(|maker| maker.words() == name).unwrap_or(Self::Shelling)
+    /// A stage of the shelling.
+    pub(crate) fn of_stage(stage: Stage) -> Self {
+        match stage {
+            Stage::Grid => Self::Grid,
+            Stage::Columns => Self::Columns,
+            Stage::Pillows => Self::Pillows,
+            Stage::Plugs => Self::Plugs,
+            Stage::Layers => Self::Layers,
+            Stage::Flips => Self::Flips,
+            Stage::Residual => Self::Residual,
+        }
     }
 }
 
@@ -166,8 +175,10 @@ mod tests {
             assert_eq!(usize::from(maker.number()), i);
             assert_eq!(Maker::ALL.iter().filter(|m| m.words() == maker.words()).count(), 1);
         }
-        assert_eq!(Maker::of_stage("residual"), Maker::Residual);
-        assert_eq!(Maker::of_stage("something new"), Maker::Shelling);
+        use Stage::{Columns, Flips, Grid, Layers, Pillows, Plugs, Residual};
+        for stage in [Grid, Columns, Pillows, Plugs, Layers, Flips, Residual] {
+            assert_eq!(Maker::of_stage(stage).words(), stage.to_string());
+        }
     }
 
     #[test]
