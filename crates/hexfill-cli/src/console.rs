@@ -225,3 +225,19 @@ fn bar_style(with_total: bool) -> ProgressStyle {
     };
     ProgressStyle::with_template(template).expect("the template is well formed")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn progress_tells_the_share_and_the_time_left_where_the_end_is_known() {
+        let began = Instant::now().checked_sub(Duration::from_secs(10)).unwrap();
+        let mut state =
+            ProgressState { bar: None, on_terminal: false, last_line: began, started: began, step: ("work", began, 0) };
+        let mut at = |done, total| state.share(&Progress { stage: "work", done, total, message: String::new() });
+        assert_eq!(at(25, Some(100)).unwrap(), "25 %, about 30 s left of it");
+        assert_eq!(at(100, Some(100)).unwrap(), "100 %");
+        assert_eq!(at(100, None), None);
+    }
+}
