@@ -104,3 +104,11 @@ fn more_threads_than_can_work_are_not_started() {
     let (code, _, err) = hexfill(dir.path(), &["fill", ":cube", "-o", "m.vtu", "-j", "10000"]);
     assert!(code == 0 && err.contains("--threads 10000:"), "{err}");
 }
+
+#[test]
+fn a_surface_that_needs_no_mending_is_told_so() {
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("s.obj"), box_of([1, 1, 2], [1.0; 3])).unwrap();
+    let (code, _, err) = hexfill(dir.path(), &["doctor", "s.obj", "--weld", "0", "--fix", "-o", "fixed.obj"]);
+    assert!(code == 0 && err.contains("mended: nothing; it can be filled"), "{err}");
+}
