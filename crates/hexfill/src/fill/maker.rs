@@ -1,5 +1,6 @@
 //! [`Maker`]: which engine, or which step of one, made a hex.
 
+use hexfill_lay::Step;
 use hexfill_mesh::{HexId, HexMesh};
 use serde::{Serialize, Serializer};
 use std::fmt;
@@ -41,7 +42,7 @@ pub enum Maker {
     Residual = 14,
     /// A second inner edge at a poor surface vertex.
     SplitStars = 15,
-    /// A pillow between stages of the shelling.
+    /// A pillow between stages of the shelling, or in the void where hexes are laid.
     PillowsBetween = 16,
     /// A boundary layer.
     BoundaryLayers = 17,
@@ -100,6 +101,17 @@ impl Maker {
             Self::PillowsBetween => "pillows between",
             Self::BoundaryLayers => "boundary layers",
             Self::Laying => "laying",
+        }
+    }
+
+    /// A step of laying.
+    pub(crate) fn of_laying(step: Step) -> Self {
+        match step {
+            Step::Pillow => Self::Pillows,
+            Step::Plug => Self::Plugs,
+            Step::Sweep => Self::Flips,
+            Step::Between => Self::PillowsBetween,
+            Step::Laid => Self::Laying,
         }
     }
 
