@@ -1,4 +1,6 @@
 //! [`judge`]: every level in turn, and the report.
+//!
+//! Source: ours: the rules are those of the book's page `definitions`, "The validity ladder".
 
 use crate::geometry::overlap::overlap;
 use crate::geometry::positions::{judge_jacobians, judge_positions};
@@ -98,6 +100,8 @@ impl Run<'_> {
         let (found, used) = judge_shape(self.input);
         self.findings.append(found);
         self.done = 1;
+        // Only here it ends early: with an index out of range nothing above can even be asked. All other levels are
+        // judged whatever failed before.
         if self.findings.breaks_level(Level::L1) {
             return Some("level 1 failed".into());
         }

@@ -15,4 +15,8 @@ fn every_record_is_a_ball_with_its_boundary() {
         assert!(row["needed"].as_u64().is_none_or(|needed| needed <= hexes), "{row}");
         assert!(row["published"].as_u64().is_none_or(|published| hexes <= published), "{row}");
     }
+    let families = json(&out)["families"].as_array().unwrap().clone();
+    let numbers: Vec<_> = families.iter().map(|f| (f["hexes"].as_u64().unwrap(), f["verified"].as_bool())).collect();
+    assert_eq!((numbers[0], numbers[2]), ((36, Some(true)), (44, None)));
+    assert!(numbers[1].0 <= 72 && numbers[1].1.is_none());
 }

@@ -8,6 +8,8 @@
 //! common quad is side `f` of the cube left and side `f ^ 1` of the cube entered, and its corners keep their two
 //! coordinates in the quad. Thus `frame of B = COMPOSE[across(A, side)][frame of A]` for any frame of A,
 //! which makes a breadth-first walk from a flag a matter of table look-ups.
+//!
+//! Source: ours.
 
 use hexfill_mesh::cube::{EDGES, FACETS, POSITIONS, corner_at};
 

@@ -1,4 +1,6 @@
 //! What is counted of a complex besides its class: vertices, Euler characteristic, chords, boundary components, ball or not.
+//!
+//! Source: ours.
 
 use crate::boundary::{Boundary, Components};
 use crate::complex::{Complex, FREE, MAX_CUBES, MAX_VERTICES};

@@ -1,4 +1,6 @@
 //! [`without_sheets`]: what can go again, as long as the rest has valid positions.
+//!
+//! Source: Borden et al. 2002 (a sheet taken out); trying it on positions and keeping what stays valid is ours.
 
 use crate::laid_mesh::LaidMesh;
 use hexfill_embed::untangle_near;

@@ -1,4 +1,6 @@
 //! [`LaidMesh`]: what laying makes.
+//!
+//! Source: ours.
 
 use crate::step::Step;
 use hexfill_geometry::Vector;

@@ -1,4 +1,6 @@
 //! [`lay`]: the verb.
+//!
+//! Source: ours (book, page `shelling`, "Laying").
 
 use crate::fewer::without_sheets;
 use crate::frame::Frame;

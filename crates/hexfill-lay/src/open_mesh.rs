@@ -1,4 +1,6 @@
 //! [`OpenMesh`]: the surface with the hexes that a sweep could glue, all at valid positions, and the void they leave.
+//!
+//! Source: ours.
 
 use crate::step::Step;
 use hexfill_embed::{Open, OpenEffort, open_start, untangle_near};
@@ -71,6 +73,8 @@ impl OpenMesh {
         let (points, apex) = open_start(&hexes, &front, n_vertices as usize, surface);
         let mut open = Self { hexes, steps, points, n_fixed: surface.len(), front, apex, forgiven: Vec::new() };
         let [bad, pyramids] = open.untangle(&open.inner(), EFFORT, ctx);
+        // A pyramid that is not valid means that the apex does not see all of the void: no pillow could be put in
+        // later, and laying could not go on.
         if pyramids > 0 || bad * FEW > surface.len() {
             return None;
         }

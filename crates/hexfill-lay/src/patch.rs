@@ -1,4 +1,6 @@
 //! [`Patch`]: what lies round the void, where hexes are laid; the rest of the mesh need not be looked at.
+//!
+//! Source: ours.
 
 use crate::laid_mesh::LaidMesh;
 use crate::open_mesh::OpenMesh;

@@ -1,4 +1,6 @@
 //! [`Plan`]: hexes that fill a void, by topology alone.
+//!
+//! Source: ours.
 
 use hexfill_mesh::{Context, QuadSurface};
 use hexfill_search::{Atlas, FillOptions, fill_avoiding};

@@ -1,4 +1,6 @@
 //! Parts of a hex mesh, and its orientation.
+//!
+//! Source: ours; breadth-first search.
 
 use crate::hexmesh::{Facet, HexMesh};
 use crate::ids::HexId;

@@ -10,6 +10,8 @@
 //!        0--------1
 //! ```
 //! Bottom cycle `0 1 2 3`, top cycle `4 5 6 7`, and `i + 4` lies above `i`.
+//!
+//! Source: the VTK formats (numbering of VTK_HEXAHEDRON).
 
 use std::sync::OnceLock;
 

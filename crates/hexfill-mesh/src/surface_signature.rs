@@ -3,6 +3,8 @@
 //! A signature is `Q1:` and the smallest breadth-first code of each component (file `surface_code.rs`), components in ascending order, joined by
 //! `.`. Two surfaces have the same signature exactly if one becomes the other by renumbering vertices and quads and, perhaps, turning all of it inside out
 //! (a mirror image). Vertices that no quad uses do not count. Time near linear for surfaces without much hidden regularity.
+//!
+//! Source: ours, after Brinkmann, McKay 2007.
 
 use crate::ids::VertexId;
 use crate::signature_text::{SEPARATOR, SignatureError, components, push_number};
@@ -253,6 +255,8 @@ fn maps(a: &QuadSurface, from: &Form, b: &QuadSurface, to: &Form) -> Vec<Vec<Ver
                 (i, walker_b.order.clone())
             })
             .collect();
+        // Every choice so far with every image not taken yet: a product over the components, so its size is the
+        // number of maps and cannot be less.
         let mut extended = Vec::new();
         for (map, used) in &partial {
             for (i, order) in images.iter().filter(|(i, _)| !used[*i]) {

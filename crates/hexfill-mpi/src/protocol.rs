@@ -3,62 +3,27 @@
 //! A worker says `Ready`, gets a chunk, answers `Done` or `Failed`, and so on until it is told to stop. A chunk that failed is
 //! given to another worker; a worker that failed gets no more work. So the totals are those of any other run, or the
 //! run ends with the chunks that could not be done.
+//!
+//! Source: ours.
 
-use hexfill_enumerate::{Chunk, ChunkResult, Code, Found, Tally};
+use hexfill_ledger::Chunk;
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
-/// From a worker to the manager.
+/// From a worker to the manager. `R`: what a finished chunk sends.
 #[derive(Serialize, Deserialize, Debug)]
-pub enum Answer {
+pub(crate) enum Answer<R> {
     /// Give me work.
     Ready,
     /// A finished chunk.
-    Done(Box<Finished>),
+    Done(R),
     /// The chunk could not be done, and why. The worker leaves.
     Failed(Chunk, String),
 }
 
-/// A chunk's result as it travels.
-#[derive(Serialize, Deserialize, Debug)]
-pub struct Finished {
-    chunk: Chunk,
-    tally: Tally,
-    cpu_nanoseconds: u64,
-    selected: Vec<String>,
-    targets: Vec<(usize, String)>,
-}
-
-impl From<ChunkResult> for Finished {
-    fn from(r: ChunkResult) -> Self {
-        Self {
-            chunk: r.chunk,
-            tally: r.tally,
-            cpu_nanoseconds: r.cpu_nanoseconds,
-            selected: r.found.selected.iter().map(Code::to_text).collect(),
-            targets: r.found.targets.iter().map(|(i, c)| (*i, c.to_text())).collect(),
-        }
-    }
-}
-
-impl TryFrom<Finished> for ChunkResult {
-    type Error = hexfill_enumerate::EnumerateError;
-
-    fn try_from(f: Finished) -> Result<Self, Self::Error> {
-        let selected = f.selected.iter().map(|c| c.parse()).collect::<Result<_, _>>()?;
-        let targets = f.targets.iter().map(|(i, c)| Ok((*i, c.parse()?))).collect::<Result<_, Self::Error>>()?;
-        Ok(Self {
-            chunk: f.chunk,
-            tally: f.tally,
-            cpu_nanoseconds: f.cpu_nanoseconds,
-            found: Found { selected, targets },
-        })
-    }
-}
-
 /// From the manager to a worker.
 #[derive(Serialize, Deserialize, Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Order {
+pub(crate) enum Order {
     /// Do this chunk.
     Do(Chunk),
     /// There is nothing left: leave.
@@ -67,7 +32,7 @@ pub enum Order {
 
 /// What the manager knows.
 #[derive(Debug)]
-pub struct Book {
+pub(crate) struct Book {
     left: VecDeque<Chunk>,
     in_flight: usize,
     /// Workers that wait because all chunks are in flight: if one fails, they get it.
@@ -75,17 +40,17 @@ pub struct Book {
     /// Workers that may still be given work.
     working: usize,
     /// Reports of failed chunks.
-    pub failures: Vec<String>,
+    pub(crate) failures: Vec<String>,
 }
 
 impl Book {
     /// A book of chunks to do by some workers.
-    pub fn new(chunks: Vec<Chunk>, workers: usize) -> Self {
+    pub(crate) fn new(chunks: Vec<Chunk>, workers: usize) -> Self {
         Self { left: chunks.into(), in_flight: 0, waiting: Vec::new(), working: workers, failures: Vec::new() }
     }
 
     /// A worker wants work: what it is told now, or nothing if it must wait.
-    pub fn ready(&mut self, worker: i32) -> Option<Order> {
+    pub(crate) fn ready(&mut self, worker: i32) -> Option<Order> {
         if let Some(chunk) = self.left.pop_front() {
             self.in_flight += 1;
             return Some(Order::Do(chunk));
@@ -99,12 +64,12 @@ impl Book {
     }
 
     /// A chunk is finished.
-    pub fn done(&mut self) {
+    pub(crate) fn done(&mut self) {
         self.in_flight -= 1;
     }
 
     /// A chunk failed and its worker left: the chunk is to be done by another.
-    pub fn failed(&mut self, worker: i32, chunk: Chunk, why: &str) {
+    pub(crate) fn failed(&mut self, worker: i32, chunk: Chunk, why: &str) {
         self.in_flight -= 1;
         self.working -= 1;
         self.left.push_front(chunk);
@@ -112,18 +77,23 @@ impl Book {
     }
 
     /// Orders for workers that waited and now need not.
-    pub fn release(&mut self) -> Vec<(i32, Order)> {
+    pub(crate) fn release(&mut self) -> Vec<(i32, Order)> {
         let waiting = std::mem::take(&mut self.waiting);
         waiting.into_iter().filter_map(|worker| self.ready(worker).map(|order| (worker, order))).collect()
     }
 
     /// Whether no worker is left to hear from.
-    pub fn is_closed(&self) -> bool {
+    pub(crate) fn is_closed(&self) -> bool {
         self.working == 0
     }
 
+    /// Whether every chunk was done, by whomever.
+    pub(crate) fn all_done(&self) -> bool {
+        self.left.is_empty()
+    }
+
     /// Chunks that nobody did.
-    pub fn undone(&self) -> usize {
+    pub(crate) fn undone(&self) -> usize {
         self.left.len()
     }
 }

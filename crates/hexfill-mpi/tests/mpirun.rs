@@ -75,3 +75,49 @@ fn the_ledger_is_shared_with_the_other_drivers() {
     assert!(!refused.status.success());
     assert!(String::from_utf8_lossy(&refused.stderr).contains("rule is strict, not weill"));
 }
+
+/// The signature of two cubes in a row.
+fn two_cubes() -> String {
+    let hexes = [[0, 1, 2, 3, 4, 5, 6, 7], [4, 5, 6, 7, 8, 9, 10, 11]];
+    let row = hexfill_mesh::HexMesh::try_new(12, &hexes).unwrap();
+    let quads: Vec<[u32; 4]> = row.boundary_quads().into_iter().map(|q| q.map(|v| v.0)).collect();
+    hexfill_mesh::surface_signature(&hexfill_mesh::QuadSurface::try_new(12, &quads).unwrap())
+}
+
+#[test]
+fn a_search_does_not_depend_on_the_number_of_ranks_and_shares_its_ledger() {
+    let surface = two_cubes();
+    let args = ["search", surface.as_str(), "--max-hexes", "9", "--chunks", "40"];
+    let Some(alone) = mpirun(1, &args) else { return };
+    let first = json(&alone);
+    assert!(alone.status.success());
+    assert_eq!((&first["exhausted"], &first["undone"]), (&true.into(), &0.into()), "{first}");
+    let problem = hexfill_prove::Problem::new(&hexfill_mesh::parse_surface_signature(&surface).unwrap(), 9).unwrap();
+    let plan = hexfill_prove::Plan::prepare(problem, &hexfill_mesh::Context::default()).unwrap();
+    let whole = hexfill_prove::search_whole(&plan, 1, &hexfill_mesh::Context::default()).unwrap();
+    assert_eq!(first["tree_sum"], format!("{:032x}", whole.tree_sum));
+    assert_eq!(first["hash_sum"], format!("{:032x}", whole.hash_sum()));
+    assert_eq!(first["meshes"].as_array().map(Vec::len), Some(whole.meshes.len()));
+    let folder = tempfile::tempdir().unwrap();
+    let with_ledger = [&args[..], &["--checkpoint", folder.path().to_str().unwrap()]].concat();
+    for ranks in [2, 4] {
+        let output = mpirun(ranks, &with_ledger).expect("it ran before");
+        assert_eq!(json(&output), first, "{ranks} ranks");
+    }
+    let merged = hexfill_prove::merge(&plan, folder.path()).unwrap();
+    assert_eq!((merged.done, merged.outcome.tree_sum), (40, whole.tree_sum));
+    let other = [&with_ledger[..2], &["--max-hexes", "8"], &with_ledger[4..]].concat();
+    let refused = mpirun(3, &other).expect("it ran before");
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("most hexes is 9, not 8"));
+}
+
+#[test]
+fn a_search_whose_only_worker_fails_proves_nothing() {
+    let surface = two_cubes();
+    let args = ["search", surface.as_str(), "--max-hexes", "5", "--chunks", "10", "--fail-rank", "1"];
+    let Some(output) = mpirun(2, &args) else { return };
+    assert!(!output.status.success());
+    let report = json(&output);
+    assert_eq!((&report["undone"], &report["exhausted"]), (&10.into(), &false.into()));
+}

@@ -1,4 +1,6 @@
 //! Drivers over the chunks of a plan: threads, with or without a ledger.
+//!
+//! Source: ours.
 
 use crate::error::ProveError;
 use crate::mesh::{Mesh, signature_of};
@@ -77,6 +79,16 @@ impl hexfill_ledger::Record for Record {
 }
 
 impl Record {
+    /// Searches a chunk: what its line in a ledger says. For drivers that bring their own processes (MPI).
+    ///
+    /// # Errors
+    /// [`ProveError::Stopped`], [`ProveError::Refused`].
+    pub fn of_chunk(plan: &Plan, chunk: Chunk, ctx: &Context<'_>) -> Result<Self, ProveError> {
+        let clock = CpuClock::start();
+        let outcome = plan.run(chunk, ctx)?;
+        Ok(Self::new(chunk, clock.elapsed(), &outcome))
+    }
+
     fn new(chunk: Chunk, cpu_nanoseconds: u64, outcome: &Outcome) -> Self {
         let meshes = outcome.meshes.values().map(|m| m.hexes.clone()).collect();
         let tree_sum = format!("{:032x}", outcome.tree_sum);
@@ -120,6 +132,16 @@ pub struct Searched {
 }
 
 impl Searched {
+    /// What some finished chunks add up to; their meshes are judged again.
+    ///
+    /// # Errors
+    /// [`ProveError::Refused`], [`ProveError::BadParameters`] for a sum that is none.
+    pub fn of_records<'r>(records: impl Iterator<Item = &'r Record>, plan: &Plan) -> Result<Self, ProveError> {
+        let mut out = Self::default();
+        out.add(records, plan)?;
+        Ok(out)
+    }
+
     /// Adds up what a ledger holds.
     fn add<'r>(&mut self, records: impl Iterator<Item = &'r Record>, plan: &Plan) -> Result<(), ProveError> {
         for record in records {
@@ -198,9 +220,8 @@ pub fn merge(plan: &Plan, folder: &Path) -> Result<Searched, ProveError> {
     if !differences.is_empty() {
         return Err(hexfill_ledger::LedgerError::OtherParameters { path: folder.into(), differences }.into());
     }
-    let mut out = Searched { chunks: merged.header.chunks, found_done: merged.records.len(), ..Searched::default() };
-    out.add(merged.records.values(), plan)?;
-    Ok(out)
+    let found_done = merged.records.len();
+    Ok(Searched { chunks: merged.header.chunks, found_done, ..Searched::of_records(merged.records.values(), plan)? })
 }
 
 /// Searches everything on threads. The outcome does not depend on their number.

@@ -2,6 +2,8 @@
 //!
 //! An automorphism of a ball mesh is determined by what it does on the boundary, so a group of automorphisms of the mesh *is* a subgroup
 //! of the boundary's automorphism group; how it acts on an interior vertex is told by the vertex's stabilizer.
+//!
+//! Source: ours.
 
 use crate::mirror::{Mirror, Sides, halves};
 use crate::state::MAX_VERTICES;

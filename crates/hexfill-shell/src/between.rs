@@ -5,6 +5,8 @@
 //! taken; the number of layers is their mean length in edges.
 //!
 //! Invariant: with one vertex of the outer component, level 0, every column has a new vertex on each level and one of the cavity on the last.
+//!
+//! Source: ours.
 
 use crate::front::{Front, NONE};
 use hexfill_geometry::{Vector, cone, dot, sub};

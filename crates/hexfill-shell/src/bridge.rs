@@ -5,6 +5,8 @@
 //! so that the column twists least, and k is its length in edges (any k keeps the parity of the front).
 //!
 //! Invariant: the column lies inside the surface as far as samples of its axis tell.
+//!
+//! Source: ours.
 
 use crate::front::Front;
 use crate::inside::winding_number;

@@ -8,6 +8,8 @@
 //! In a *minimal* lens (no lens inside) every other chord runs from one arc to the other, so that the faces along an arc are distinct and neither
 //! arc is longer than the number of vertices inside. Hence looking `limit` quads far from every corner finds every minimal lens of at most
 //! `limit` vertices. Minimal lenses have a triangle at an arc (Steinitz' lemma; Chang, Erickson, "Untangling planar curves", 2017).
+//!
+//! Source: Chang, Erickson 2017 (minimal bigons and Steinitz' lemma on their triangles); the bound on where to look is ours.
 
 use crate::dart::{next, opposite, prev};
 use crate::front::Front;

@@ -1,4 +1,6 @@
 //! The engine: meshes of a surface by layers, by flips, and by flips where layers get no further.
+//!
+//! Source: ours: which engine, in which order, and what is kept.
 
 use crate::angles::wanted_hexes;
 use crate::between::between;

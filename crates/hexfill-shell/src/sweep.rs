@@ -3,6 +3,8 @@
 //! First come whole layers (pillows) if asked for, then the plugs of handles, then the sweep itself (see `sweeper`), then what is done about
 //! chords that cross themselves (see `stir`),
 //! and at last the atlas. On spheres whose chords are simple the sweep alone closes the void.
+//!
+//! Source: Folwell, Mitchell 1999 (curves contracted until the void is closed); plugs, stirring and the atlas at the end are ours.
 
 use crate::front::{Front, NONE};
 use crate::stir::stir_front;
@@ -94,6 +96,8 @@ pub fn sweep(
             }
         });
     }
+    // Attempts differ by their seeds alone. With wants stated a closed front is not enough: the next attempts look
+    // for one that costs less.
     let mut best: Option<(Front, f64)> = None;
     let mut stopped = None;
     // The last attempt is one without wants, if no other closed: it may, and then costs nothing worse than a search.

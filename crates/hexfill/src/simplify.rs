@@ -1,4 +1,6 @@
 //! `simplify`: a mesh with fewer hexes and the same boundary, judged before it is given out.
+//!
+//! Source: Verhetsel et al. 2018, by way of `hexfill-search`.
 
 use hexfill_check::{Judged, Level, Parts, judge};
 use hexfill_io::{MeshData, TagOn};

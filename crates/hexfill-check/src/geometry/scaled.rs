@@ -3,6 +3,8 @@
 //! SJ = det J / (|J1| |J2| |J3|). On a box with Bernstein coefficients B of det J and N of the product of norms (see
 //! [`norm_products`]), `SJ >= min B/N` wherever that is not negative; values at corners of boxes bound the minimum from
 //! above. The box with the smallest lower bound is halved until the interval is short. Rounding goes outward.
+//!
+//! Source: ours, on the coefficients of Johnen, Weill, Remacle 2017.
 
 use super::bernstein::{CORNERS, Cell, ERROR, Frame, Lengths, UNIT, Vector, halve, norm_products};
 use std::cmp::Ordering;

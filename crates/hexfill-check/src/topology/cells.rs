@@ -1,4 +1,6 @@
 //! Edges and quads as lists, star by star: what the homology needs and no more.
+//!
+//! Source: ours.
 
 use super::star::corner_table;
 use super::stars::Stars;
@@ -24,6 +26,7 @@ impl Edges {
                 for &code in stars.of(v as u32) {
                     let hex = &hexes[(code >> 3) as usize];
                     let corner = &table[(code & 7) as usize];
+                    // An edge is listed at its smaller end, so every edge once and each list is sorted.
                     near.extend(corner[..3].iter().map(|&k| hex[k]).filter(|&w| w > v as u32));
                 }
                 near.sort_unstable();

@@ -10,6 +10,9 @@
 //!    matrix: b1 = c1 - r, b2 = c2 - r, b3 = number of closed parts, b0 = number of trees.
 //!
 //! If one vertex is the only critical cell, the mesh collapses to a point; a manifold that does is a ball (Whitehead).
+//!
+//! Source: Forman 1998 (discrete Morse theory), Benedetti and Lutz 2014 (that simple choices of what to collapse nearly always do); Whitehead 1939 (a manifold that
+//! collapses is a ball).
 
 use super::cells::{CHUNK, Edges, quads_of_task};
 use super::star::corner_table;

@@ -20,6 +20,8 @@
 //! sorted by the other vertex. The same sorted list pairs the quads round the vertex, because a quad at `v` is known by its
 //! corner opposite to `v`: the list has the incidence of the vertex link too. Work is linear in the mesh but for the sorting
 //! within each star.
+//!
+//! Source: ours.
 
 use super::parity::ParityForest;
 use crate::report::{Findings, Offender};

@@ -8,6 +8,8 @@
 //! 4. afterwards every boundary edge is in exactly two boundary quads.
 //!
 //! Gluings of opposite facets must keep orientation; that is judged with level 3 (`non-orientable`).
+//!
+//! Source: Weill.
 
 use crate::report::{Findings, Offender};
 use crate::rule::Rule;

@@ -8,6 +8,7 @@ pub(crate) mod convert;
 pub(crate) mod doctor;
 pub(crate) mod embed;
 pub(crate) mod enumerate;
+mod families;
 pub(crate) mod fill;
 pub(crate) mod gallery;
 pub(crate) mod info;

@@ -1,5 +1,6 @@
-//! `hexfill records`: what is known of the problems whose best mesh the catalogue holds, and what was proved.
+//! `hexfill records`: what is known of the problems whose best mesh the catalogue holds and of whole families of surfaces, and what was proved.
 
+use super::families::{self, families};
 use crate::console::Console;
 use crate::exit::Exit;
 use hexfill::catalog::{self, Entry, Record};
@@ -43,13 +44,20 @@ struct Row {
 pub(crate) fn run(args: &RecordsArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
     let entries = catalog::entries().iter().filter_map(|entry| entry.best_mesh().map(|mesh| (entry, mesh)));
     let rows = entries.map(|(entry, mesh)| row(entry, &mesh, args.verify, ctx)).collect::<anyhow::Result<Vec<_>>>()?;
-    let stands = rows.iter().all(|row| row.verified != Some(false));
+    let families = families(args.verify, ctx)?;
+    let mut verdicts = rows.iter().map(|row| row.verified).chain(families.iter().map(|family| family.verified));
+    let stands = verdicts.all(|verified| verified != Some(false));
     let exit = if stands { Exit::Done } else { Exit::No };
     if console.json {
-        console.print_json(&json!({ "json_version": 1, "records": rows, "exit_code": exit as i32 }))?;
+        console.print_json(
+            &json!({ "json_version": 1, "records": rows, "families": families, "exit_code": exit as i32 }),
+        )?;
     } else {
         for row in &rows {
             console.print(line(row))?;
+        }
+        for family in &families {
+            console.print(families::line(family))?;
         }
     }
     Ok(exit)
@@ -80,11 +88,16 @@ fn stands(mesh: &MeshData, problem: &Problem, ctx: &Context<'_>) -> bool {
     })
 }
 
-fn line(row: &Row) -> String {
-    let verified = match row.verified {
+/// What the judge said, at the end of a line.
+pub(super) fn verdict(verified: Option<bool>) -> &'static str {
+    match verified {
         Some(true) => "; judged: a ball, the boundary exact",
         Some(false) => "; REFUSED by the judge",
         None => "",
-    };
+    }
+}
+
+fn line(row: &Row) -> String {
+    let verified = verdict(row.verified);
     format!("{:<20} {:>2} quads  {}{verified}", row.problem, row.quads, row.record)
 }

@@ -4,6 +4,8 @@
 //! along disks has such edges). Invariant: local edge `k` of a tet joins its vertices [`TET_EDGES`]`[k]`, local face `i`
 //! is opposite its vertex `i`, and every tet is positively oriented (vertices 1, 2, 3 counter-clockwise seen from 0 are
 //! clockwise; that is, det(v1-v0, v2-v0, v3-v0) > 0 in an embedding).
+//!
+//! Source: ours; complexes in which two edges may join the same vertices are the Delta-complexes of Hatcher 2002, section 2.1.
 
 use super::request::TetRequest;
 use crate::error::ConstructError;
@@ -120,6 +122,8 @@ impl TetComplex {
             }
         }
         have.sort_unstable();
+        // Faces are named, so two may have the same vertices (an apex with two edges to one vertex); on the boundary
+        // that would leave open which of them is meant.
         if let Some(w) = have.windows(2).find(|w| w[0].0 == w[1].0) {
             return err(format!("two boundary faces have the vertices {:?}", w[0].0.map(|v| v.0)));
         }

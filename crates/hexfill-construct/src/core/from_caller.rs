@@ -2,6 +2,8 @@
 //!
 //! They must fill exactly the triangles of [`crate::core_triangles`]; the boundary is compared with the request by
 //! the construction.
+//!
+//! Source: Erickson 2014, section 5, takes tetrahedra of the interior as given; so does this.
 
 use super::complex::TetComplex;
 use super::fit::fitted;

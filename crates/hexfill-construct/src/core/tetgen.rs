@@ -5,6 +5,8 @@
 //! apart (tetgen 1.5.0 stops on an assertion of its own on some small tori, on others only with `-M`). It fills everything that the surface encloses, cavities
 //! as well; which tets belong to the solid is decided here, by walking inward from the triangles asked for, and so is
 //! the orientation of each tet: nothing rests on the signs of small volumes.
+//!
+//! Source: the tetgen manual, for its files and options; the way back from an answer to tets inside is ours.
 
 use super::complex::{OUTWARD, TetComplex, others, sorted};
 use super::fit::fitted;
@@ -188,6 +190,8 @@ fn inside(
         faces.extend((0..4).map(|i| (sorted(others(i).map(|k| tet[k])), t)));
     }
     faces.sort_unstable();
+    // A sorted list instead of a map: faces are asked for a few times each, and the answer keeps the order of the
+    // tets.
     let with = |face: [VertexId; 3]| {
         let start = faces.partition_point(|f| f.0 < face);
         faces[start..].iter().take_while(move |f| f.0 == face)
@@ -223,6 +227,8 @@ fn inside(
             }
         }
     }
+    // From the wall inward, never through a wall: cavities and the hull's pockets, which tetgen fills as well, are
+    // not reached.
     while let Some(t) = stack.pop() {
         if std::mem::replace(&mut keep[t], true) {
             continue;

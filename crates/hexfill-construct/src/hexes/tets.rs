@@ -4,6 +4,8 @@
 //! its lone vertex and on the side of the other two) and one a tet (two if cut). A corner hex takes all its points on
 //! the side of its vertex; a sheet hex joins the two copies round a cut edge. The pattern on a face depends on
 //! Sigma alone, so tets fit, and on the boundary it is the pattern of the inner facets (Erickson 2014, figure 8).
+//!
+//! Source: Erickson 2014, section 5 and figure 8; the tables by local numbers are ours.
 
 use crate::core::Inside;
 use crate::core::complex::{OUTWARD, TET_EDGES, TetComplex, others, tet_edge};

@@ -1,4 +1,6 @@
 //! A chain of hexes between two cubes, and the boundary of the ball that all together are.
+//!
+//! Source: Erickson 2014 (odd components are paired); the chain of hexes is ours.
 
 use crate::core::complex::sorted;
 use crate::ids::PointId;
@@ -19,6 +21,7 @@ pub(super) fn chain(
     let cost = |h: usize| {
         if h == first || h == last { 1 } else { 1 + 4 * hexes[h].iter().filter(|v| near.contains(v)).count() }
     };
+    // Dijkstra with ties by number of the hex, so that of equal chains always the same one is taken.
     let mut best: BTreeMap<usize, (usize, usize)> = BTreeMap::from([(first, (0, first))]);
     let mut heap = BinaryHeap::from([(std::cmp::Reverse(0), first)]);
     while let Some((std::cmp::Reverse(length), h)) = heap.pop() {

@@ -8,6 +8,8 @@
 //! Why this stays proper: the boundary of the ball consists of quads of a complex that is proper, so it is a proper
 //! surface (checked, as is that it is one sphere), and in a mesh made by the construction a hex meets the boundary in a face
 //! of one quad only.
+//!
+//! Source: Erickson 2014 (odd components are paired); the ball that is filled again is ours.
 
 mod chain;
 

@@ -3,6 +3,8 @@
 //! Thurston 1993, Mitchell 1996, Erickson 2014: a quad surface bounds a hex mesh of its interior iff the number of
 //! quads is even and no odd cycle of edges bounds in the interior (Z/2-homology). A proper one needs moreover
 //! that two quads share nothing, a vertex or an edge. Which cycles bound is read off linking numbers.
+//!
+//! Source: Thurston 1993, Mitchell 1996; Erickson 2014, section 4, for any genus. Reading it off linking numbers is ours.
 
 use super::linking::{Linking, LinkingError, linking};
 use super::nesting::solids;

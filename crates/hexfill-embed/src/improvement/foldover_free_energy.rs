@@ -6,6 +6,8 @@
 //! With eps > 0 it is finite on inverted terms and pulls them right; as eps falls to 0 it becomes a barrier.
 //! A hex starts with the eight corner terms; any of the 64 mixed determinants of its Bernstein form can be added,
 //! and with all of them positive det J is positive in the whole cell.
+//!
+//! Source: Garanzha et al. 2021; the mixed determinants as further terms are ours, after Johnen, Weill, Remacle 2017.
 
 use crate::cell::frame::{BOTTOM_CORNERS, CORNERS, FRAME_EDGES, Frame, MIXED, PYRAMID_EDGES};
 use crate::problem::Problem;

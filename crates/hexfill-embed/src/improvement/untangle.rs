@@ -5,6 +5,8 @@
 //! with F before and F' after a minimisation, `sigma = max(1 - F'/F, 1/10)`, `mu = (1 - sigma) chi(eps, Dmin)`, and the
 //! next eps is `2 sqrt(mu (mu - Dmin))` while `Dmin < mu`, else tiny. When all terms are positive the cells are put
 //! to the Bernstein test, and the mixed determinants of the cells that fail it join the energy.
+//!
+//! Source: Garanzha et al. 2021; the Bernstein test at the end is ours, after Johnen, Weill, Remacle 2017.
 
 use super::foldover_free_energy::{Energy, chi};
 use crate::cell::bisection::Sign;
@@ -79,7 +81,7 @@ pub(crate) fn untangle(
         let (after, stopped) = minimise_energy(&mut energy, &mut x, points, limits, &mut spent, context);
         smallest = energy.smallest_determinant(points);
         context.report("untangle", round as u64, Some(limits.rounds as u64), || {
-            format!("smallest determinant {smallest:.3e} at eps {:.3e}", energy.epsilon)
+            format!("smallest determinant {smallest:.3e}, valid when positive")
         });
         // Positive terms are positive corners; the Bernstein form says whether the cells are positive inside, too.
         if smallest > 0.0 {

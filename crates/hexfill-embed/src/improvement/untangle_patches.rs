@@ -2,6 +2,8 @@
 //!
 //! Cells that fail are seeds of patches; each patch is untangled alone with its surroundings held.
 //! Patches grow from round to round until nothing fails, and the whole mesh is the last patch.
+//!
+//! Source: ours, with the energy of Garanzha et al. 2021.
 
 use super::each_patch::improve_each;
 use super::smoothing::smooth;

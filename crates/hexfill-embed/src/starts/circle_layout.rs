@@ -4,6 +4,8 @@
 //! right angles: so going once round a circle, kite by kite, gives the touching points of its edges and the centres of its neighbours. Circles are
 //! gone round in the order of their radii, largest first, as errors grow from large to small ones least.
 //! The lift is the stereographic projection of the touching points.
+//!
+//! Source: Bobenko, Springborn 2004 (kites); the order of the circles is ours.
 
 use super::circle_packing::Packing;
 use hexfill_geometry::Vector;

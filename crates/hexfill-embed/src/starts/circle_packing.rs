@@ -5,6 +5,8 @@
 //! Koebe's theorem"): send one touching point to infinity, so that its two vertices and two faces become the sides of a rectangle; the
 //! logarithmic radii of all others minimise a convex function whose gradient is "target angle minus sum of kite angles",
 //! `2 atan(r_j / r_i)` per kite.
+//!
+//! Source: Bobenko, Springborn 2004; existence: Koebe 1936, Andreev 1970.
 
 use crate::error::EmbedError;
 use crate::solvers::conjugate_gradients::{Limits, conjugate_gradients};

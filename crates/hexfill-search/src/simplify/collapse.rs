@@ -1,4 +1,6 @@
 //! [`collapse`]: everything that can be pressed flat.
+//!
+//! Source: the collapses of its two neighbours, over and over.
 
 use crate::simplify::column_collapse::collapse_columns;
 use crate::simplify::live::LiveMesh;

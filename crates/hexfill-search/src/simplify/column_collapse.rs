@@ -7,6 +7,8 @@
 //!
 //! A column that ends on the boundary would fold the quads it ends with, so only closed ones can go, and only if the quad
 //! comes back without a quarter turn. The two sheets that cross along the column are cut there and joined otherwise.
+//!
+//! Source: Daniels et al. 2008 (quads); Shepherd et al. 2010 (hexes).
 
 use crate::simplify::live::{LiveMesh, NONE};
 use crate::simplify::quotient::{Kept, Quotient, edge};

@@ -11,6 +11,8 @@
 //! Work comes in batches: a batch of regions is grown in a mesh at rest by all threads, each with random numbers of its own,
 //! and their offers are then placed in order, those that no longer fit being dropped. So the result is the same for any number
 //! of threads, unless the clock ends it.
+//!
+//! Source: Verhetsel et al. 2018 (balls exchanged for smaller ones), Kirkpatrick et al. 1983 (annealing).
 
 mod collapse;
 #[cfg(test)]
@@ -207,6 +209,8 @@ fn exchange_balls(mesh: &HexMesh, atlas: &Atlas, options: &SimplifyOptions, ctx:
             report.stop = stop;
             break;
         }
+        // Offers of one batch are made on the same mesh and those that touch a ball exchanged before are lost: so a
+        // batch is small beside the mesh.
         let size = (live.n_hexes() as u64 / 16).clamp(4, 1024).min(options.balls - report.balls);
         let done = clock.done(report.balls);
         if done / COLLAPSE_EVERY > collapsed_at {
@@ -216,6 +220,8 @@ fn exchange_balls(mesh: &HexMesh, atlas: &Atlas, options: &SimplifyOptions, ctx:
         let search = search_of(options, done);
         let seen = live.exchanges();
         for offer in offers(&live, &mut workers, report.balls, size, &search, ctx) {
+            // Blocked pairs far from the ball may have changed too, through vertices they share: hence the second
+            // question.
             if live.are_untouched_since(&offer.removed, seen) && still_fits(&live, &offer, seen) {
                 let kind = if offer.gain > 0 { 0 } else { 1 + usize::from(offer.gain < 0) };
                 report.exchanges[kind] += 1;

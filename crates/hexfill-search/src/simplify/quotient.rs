@@ -10,6 +10,8 @@
 //! Proper intersection is the table of vertex pairs: the cells after the collapse that join the vertices of a pair (an edge, or a
 //! quad by its diagonal, or a hex by its body diagonal) must be at most one. Only pairs with a merged vertex can change, so
 //! the hexes at merged vertices are all that is looked at.
+//!
+//! Source: Cohen 1967 (maps whose fibres are contractible); reducing them to trees is ours.
 
 use crate::simplify::live::{LiveMesh, NONE};
 use hexfill_mesh::cube::{EDGES, FACET_DIAGONALS};

@@ -1,4 +1,6 @@
 //! What an [`Effort`] means in numbers. No clock: the same mesh every time.
+//!
+//! Source: ours.
 
 use crate::best::pillows::PillowLimits;
 use crate::fill::options::Effort;

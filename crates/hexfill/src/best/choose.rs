@@ -3,6 +3,8 @@
 //! Engines in this order, the next only if none before brought a good mesh: atlas and shelling, inward flips, construction.
 //! The order of meshes: certified ones first, then those whose worst scaled Jacobian is at least [`GOOD`], then fewest
 //! hexes for their quality ([`Prefer`]).
+//!
+//! Source: ours; measured in `record/embed-2026-11-21.md` and `record/shelling-2026-11-22.md`.
 
 use crate::best::budget::Budget;
 use crate::best::choice::{Candidate, Choice, Outcome};
@@ -47,6 +49,9 @@ pub(crate) const MOST_LAID: usize = 2500;
 
 /// Pillows are put into meshes of surfaces of at most so many quads.
 const MOST_PILLOWED: usize = 160;
+
+/// The share of the worst scaled Jacobian that is kept while tiny cells grow.
+const EVEN: f64 = 0.9;
 
 /// The place of a mesh in the order; smaller is better.
 type Rank = (u8, f64);
@@ -104,6 +109,7 @@ pub(crate) fn fill_best(
     let why_none = trial.go_on()?;
     trial.resort()?;
     trial.polish();
+    trial.inflate();
     let layers = trial.cut_layers()?;
     Ok(trial.finish(why_none, layers))
 }
@@ -217,7 +223,9 @@ impl<'a> Trial<'a> {
         }
         let none_valid = no_room(&self.problem.surface, self.boundary).map(|why| format!("none can be valid: {why}"));
         let why_none = none_valid.or_else(|| match self.hopeless() {
-            Some(Hopeless::Crosses(why)) => Some(format!("{why} (--best goes on all the same)")),
+            Some(Hopeless::Crosses(why) | Hopeless::Folded(why)) => {
+                Some(format!("{why} (--best goes on all the same)"))
+            }
             _ => None,
         });
         // The atlas has many fillings of the smallest surfaces, with fewer hexes than can be laid.
@@ -492,12 +500,35 @@ impl<'a> Trial<'a> {
         }
         let mut more = *self.embed;
         more.starts = 1;
-        more.programs = more.programs.min(self.budget.programs);
+        // What is not good yet is worth all of them.
+        if placed.worst() >= GOOD {
+            more.programs = more.programs.min(self.budget.programs);
+        }
         let from = Filled { start: Some(placed.points.clone()), ..filled.clone() };
         let polished = place_as_it_is(&from, self.boundary, Some(&more), &limited);
         // What was screened is certified already; the raise must not lose that.
         if polished.is_certified() && polished.worst() > placed.worst() {
             *placed = polished;
+        }
+    }
+
+    /// Lets tiny cells of the best mesh grow. A scaled Jacobian knows no sizes, and hexes laid round an apex shrink from pillow to pillow.
+    fn inflate(&mut self) {
+        let limited = self.limited();
+        let Some((_, filled, placed)) =
+            self.best.as_mut().filter(|(_, f, p)| f.route == Route::Laying && p.is_certified())
+        else {
+            return;
+        };
+        let worst = placed.worst();
+        let floor = if worst >= GOOD { GOOD.max(EVEN * worst) } else { EVEN * worst };
+        // The judge's lower bounds are a little lower.
+        let asked = 1.02 * floor;
+        let Ok(Some(points)) = hexfill_embed::inflate(&filled.mesh, &placed.points, asked, &limited) else { return };
+        let inflated = Placed::judged(&filled.mesh, self.boundary, points, placed.embedding.clone(), None);
+        // Whoever judges has the last word.
+        if inflated.is_certified() && inflated.worst() >= floor {
+            *placed = inflated;
         }
     }
 

@@ -1,4 +1,6 @@
 //! The construction, made smaller if that was asked for.
+//!
+//! Source: ours.
 
 use crate::fill::attempt::Attempt;
 use crate::fill::error::FillError;
@@ -43,6 +45,7 @@ pub(crate) fn construct(
             }
             made => made?,
         };
+        // Variants differ by diagonals and matchings only; one report stands for all.
         if variant == 0 {
             result.tried.push(Attempt::Construction(Box::new(made.report)));
         }

@@ -1,4 +1,6 @@
 //! [`Maker`]: which engine, or which step of one, made a hex.
+//!
+//! Source: ours.
 
 use hexfill_lay::Step;
 use hexfill_mesh::{HexId, HexMesh};

@@ -1,4 +1,6 @@
 //! Small spheres: the atlas, inward flips, and growth of an atlas towards the surface.
+//!
+//! Source: Verhetsel et al. 2019, in the order atlas, flips, growth, which is ours.
 
 use crate::fill::attempt::Attempt;
 use crate::fill::error::FillError;
@@ -91,6 +93,8 @@ fn grow_towards(
         None => (None, Growth::new(grow_options)),
     };
     loop {
+        // Asked after each level, so the first filling found has the fewest hexes this growth can reach; nothing is
+        // blocked outside a whole surface, so the first placement is as good as any.
         for ball in growth.balls_for(&cavity) {
             if ball.n_hexes() as u64 > u64::from(options.max_hexes) {
                 continue;

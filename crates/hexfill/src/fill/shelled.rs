@@ -1,4 +1,6 @@
 //! The surface swept inward by its own dual curves.
+//!
+//! Source: ours.
 
 use crate::fill::attempt::Attempt;
 use crate::fill::error::FillError;

@@ -4,6 +4,8 @@
 //! Each of them carries a filling to another one, isomorphic as a mesh, with other coordinates: the scaled Jacobian of one
 //! pyramid of 44 hexes is at most 0 one way and reaches 0.396 the other. Two ways are the same if an automorphism of the mesh
 //! and a congruence of the positions carry one to the other (double cosets).
+//!
+//! Source: ours.
 
 use hexfill_embed::star_bounds;
 use hexfill_geometry::{norm, sub};

@@ -1,4 +1,6 @@
 //! Which way the quads of a surface face.
+//!
+//! Source: ours.
 
 use crate::problem::solids::depths;
 use hexfill_geometry::{cone, sub};

@@ -1,4 +1,6 @@
 //! Faces with their two sides, and the shells that sides make round regions.
+//!
+//! Source: ours.
 
 use crate::regions::error::RegionsError;
 use hexfill_geometry::{Vector, cone, cross, direction, dot, midpoint, sub};
@@ -45,6 +47,7 @@ pub(super) fn walls(data: &MeshData) -> (Vec<[u32; 4]>, Vec<bool>) {
                 index.insert(key, walls.len() - 1);
                 walls.len() - 1
             }
+            // Between two hexes of the file, and no face of it: nothing to see there.
             None => continue,
         };
         // Facets face out of their hex, which lies behind them.
