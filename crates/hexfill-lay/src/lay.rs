@@ -36,7 +36,7 @@ impl Default for LayOptions {
 const SMALL: u64 = 150;
 /// Meshes from which sheets are taken.
 const KEPT: usize = 2;
-/// On surfaces of more quads only the one with fewest hexes is given, as embedding another takes too long.
+/// On surfaces of more quads only the one with fewest invalid hexes, then fewest hexes is given, as embedding another takes too long.
 const LARGE: usize = 500;
 /// Plans for one mesh: a jam that pillows do not clear asks for another.
 const PLANS: u64 = 12;
@@ -72,6 +72,8 @@ pub fn lay(surface: &QuadSurface, points: &[Vector], options: &LayOptions, ctx: 
             filled.into_par_iter().filter_map(|filled| filled.whole(options.sheets, ctx)).collect();
         laid.sort_by_key(|laid| laid.mesh.n_hexes());
         if surface.n_quads() > LARGE {
+            // Stable: of those with fewest invalid hexes.
+            laid.sort_by_key(|laid| laid.invalid);
             laid.truncate(1);
         }
         for laid in &mut laid {

@@ -1,4 +1,6 @@
 //! [`Step`]: what made a hex of a laid mesh.
+//!
+//! Source: ours.
 
 /// Which step made a hex.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
