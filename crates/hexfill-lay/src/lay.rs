@@ -42,7 +42,7 @@ const LARGE: usize = 500;
 const PLANS: u64 = 12;
 
 /// Lays meshes for a surface whose vertices are at `points` (outward orientation), fewest hexes first; none if no sweep of it leaves one void that can be
-/// held open, or no attempt came to its end. The same for any number of threads.
+/// held open, or no attempt came to its end. At most one on surfaces of more than 500 quads. The same for any number of threads.
 pub fn lay(surface: &QuadSurface, points: &[Vector], options: &LayOptions, ctx: &Context<'_>) -> Vec<LaidMesh> {
     let frame = Frame::of(points);
     let within: Vec<Vector> = points.iter().map(|&p| frame.enter(p)).collect();
