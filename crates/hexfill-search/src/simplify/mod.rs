@@ -28,7 +28,7 @@ use crate::atlas::Atlas;
 use crate::cavity::MAX_QUADS;
 use crate::grow::{GrowOptions, Growth};
 use collapse::collapse_live;
-pub use collapse::{Collapse, collapse, single_sheet_collapses};
+pub use collapse::{Collapse, WithoutSheet, collapse, single_sheet_collapses};
 use hexfill_mesh::{Context, HexMesh, StopReason, VertexId};
 use live::{LiveMesh, NONE};
 use offer::{Offer, Search, Worker, sequence};

@@ -272,7 +272,8 @@ impl<'a> Trial<'a> {
                 continue;
             }
             verify(surface, &laid.mesh, Route::Laying)?;
-            let filled = Filled { start: Some(laid.points), ..Filled::by(Route::Laying, laid.mesh) };
+            let makers = laid.steps.iter().map(|&step| Maker::of_laying(step)).collect();
+            let filled = Filled { start: Some(laid.points), makers, ..Filled::by(Route::Laying, laid.mesh) };
             self.consider_from(filled, false)?;
         }
         Ok(())

@@ -2,6 +2,7 @@
 //!
 //! Source: ours.
 
+use hexfill_lay::Step;
 use hexfill_mesh::{HexId, HexMesh};
 use hexfill_shell::Stage;
 use serde::{Serialize, Serializer};
@@ -44,7 +45,7 @@ pub enum Maker {
     Residual = 14,
     /// A second inner edge at a poor surface vertex.
     SplitStars = 15,
-    /// A pillow between stages of the shelling.
+    /// A pillow between stages of the shelling, or in the void where hexes are laid.
     PillowsBetween = 16,
     /// A boundary layer.
     BoundaryLayers = 17,
@@ -116,6 +117,17 @@ impl Maker {
             Stage::Layers => Self::Layers,
             Stage::Flips => Self::Flips,
             Stage::Residual => Self::Residual,
+        }
+    }
+
+    /// A step of laying.
+    pub(crate) fn of_laying(step: Step) -> Self {
+        match step {
+            Step::Pillow => Self::Pillows,
+            Step::Plug => Self::Plugs,
+            Step::Sweep => Self::Flips,
+            Step::Between => Self::PillowsBetween,
+            Step::Laid => Self::Laying,
         }
     }
 }
