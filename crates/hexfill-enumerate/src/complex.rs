@@ -289,6 +289,7 @@ impl Complex {
                 out.next[b as usize % MAX_CUBES][self.opposite_side(a, f) % 6] = FREE;
             }
         }
+        // The order of cubes is no part of a complex, so the gap is closed with the last one and one cube is renamed.
         out.cubes[a] = out.cubes[last];
         out.sets[a] = out.sets[last];
         out.next[a] = out.next[last];

@@ -235,6 +235,7 @@ const fn build_edges_off() -> [u16; 64] {
         let mut e = 0;
         while e < 12 {
             let [a, b] = EDGES[e];
+            // Loops by hand, as constant evaluation has no iterators.
             let mut on = false;
             let mut f = 0;
             while f < 6 {

@@ -4,6 +4,7 @@
 
 use crate::open_mesh::OpenMesh;
 use crate::plan::Plan;
+use crate::step::Step;
 use crate::void_front::{NOT_YET, VoidFront, advanced};
 use hexfill_embed::OpenEffort;
 use hexfill_geometry::Vector;
@@ -139,6 +140,7 @@ impl Laying {
         }
         self.open.front = advanced(&self.open.front, &laid, covered);
         self.open.hexes.push(laid);
+        self.open.steps.push(Step::Laid);
     }
 
     /// Untangles round the last hex, with so many rings free. Whether that made everything valid.
@@ -194,6 +196,7 @@ impl Laying {
             });
             let [a, b, c, d] = *quad;
             self.open.hexes.push([a, b, c, d, outer[0], outer[1], outer[2], outer[3]]);
+            self.open.steps.push(Step::Between);
         }
         self.pillows += 1;
         self.since = 0;

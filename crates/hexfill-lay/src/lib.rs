@@ -48,7 +48,9 @@ mod laying;
 mod open_mesh;
 mod patch;
 mod plan;
+mod step;
 mod void_front;
 
 pub use laid_mesh::LaidMesh;
 pub use lay::{LayOptions, lay};
+pub use step::Step;

@@ -73,6 +73,7 @@ pub fn symmetries() -> &'static [[usize; 8]; 48] {
                     }
                     *slot = corner_at(image[0], image[1], image[2]);
                 }
+                // A permutation of the axes and some axes turned round: the determinant is the product of both signs.
                 let direct = even == flips.count_ones().is_multiple_of(2);
                 if direct { rotations.push(map) } else { reflections.push(map) }
             }

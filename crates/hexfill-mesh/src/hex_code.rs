@@ -36,6 +36,7 @@ fn tables() -> &'static Tables {
     static TABLES: OnceLock<Tables> = OnceLock::new();
     TABLES.get_or_init(|| {
         let frames = symmetries().map(|s| s.map(|k| k as u8));
+        // A frame is told by three of its corners, so three octal digits are an index.
         let mut index = [u8::MAX; 512];
         for (i, frame) in frames.iter().enumerate() {
             index[octal(frame)] = i as u8;

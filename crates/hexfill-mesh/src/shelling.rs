@@ -85,6 +85,8 @@ impl<'a> Shelling<'a> {
             .iter()
             .map(|hex| {
                 EDGES.map(|[i, j]| {
+                    // Numbers by first occurrence: the map is only looked up and never gone through, so its order
+                    // does not matter.
                     let next = ids.len() as u32;
                     *ids.entry((hex[i].min(hex[j]), hex[i].max(hex[j]))).or_insert(next)
                 })

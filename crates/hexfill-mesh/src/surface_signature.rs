@@ -211,6 +211,8 @@ pub fn surface_isomorphism(a: &QuadSurface, b: &QuadSurface) -> Option<Vec<Optio
     if (a.n_quads(), a.n_used_vertices(), a.n_components()) != (b.n_quads(), b.n_used_vertices(), b.n_components()) {
         return None;
     }
+    // One component may be mirrored by itself. Several must all be mirrored or none: an inner wall turned the other
+    // way would be another solid.
     let (from, to) = if a.n_components() == 1 {
         (Form::of(a, Handedness::Both), Form::of(b, Handedness::Both))
     } else {
@@ -224,6 +226,7 @@ pub fn surface_isomorphism(a: &QuadSurface, b: &QuadSurface) -> Option<Vec<Optio
     }
     let mut map = vec![None; a.n_vertices()];
     let (mut walk_a, mut walk_b) = (Walker::new(a), Walker::new(b));
+    // Parts are sorted by code, so equal keys pair them; which of two equal parts goes where does not matter.
     for (x, y) in from.parts.iter().zip(&to.parts) {
         walk_a.code(x.flag);
         walk_b.code(y.flag);

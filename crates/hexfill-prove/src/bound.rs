@@ -83,6 +83,7 @@ impl Fans {
                 }
             }
         }
+        // A vertex may have several fans while hexes round it are missing: each is a rim of its own.
         let mut seen = Darts([0; 64]);
         for q in state.open_quads() {
             for d in 4 * q..4 * q + 4 {

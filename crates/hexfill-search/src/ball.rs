@@ -111,6 +111,8 @@ impl Ball {
         if mine.code() != theirs.code() {
             return Vec::new();
         }
+        // One flag of the ball against all of the cavity: every isomorphism once, as automorphisms of the one are
+        // those of the other.
         let flag = mine.flags()[0];
         let numbers = Canonical::vertex_numbers(&self.boundary, flag);
         let mut found = Vec::new();

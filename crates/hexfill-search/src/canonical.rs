@@ -175,6 +175,8 @@ impl Canonical {
         let mut reached = 1u8;
         let step = if flag.mirrored { 3u8 } else { 1 };
         for i in 0..n {
+            // The same walk as in `try_flag`, vertices numbered on the way. Kept apart: the code is computed for
+            // every flag of every child, the numbers for few.
             let mut d = entry[i];
             for _ in 0..4 {
                 let start = if flag.mirrored { next(d) } else { d };

@@ -297,6 +297,8 @@ pub fn apply(cavity: &Cavity, placement: &Placement) -> (Cavity, [u8; MAX_VERTIC
     let quad_of = keep_quads(cavity, covered, &renamed, &mut after);
     add_open_facets(cavity, placement, &renamed, &quad_of, &mut after);
     keep_pairs(cavity, buried, &renamed, &mut after);
+    // What the hex uses and no longer shows: edges and diagonals between corners that are still on the outside,
+    // buried in it.
     for &[i, j] in &table.blocks {
         let a = renamed[usize::from(placement.corners[i])];
         let b = renamed[usize::from(placement.corners[j])];

@@ -19,23 +19,63 @@ use rustc_hash::FxHashSet;
 use xxhash_rust::xxh3::xxh3_128;
 
 /// What to look for.
+///
+/// | option | default |
+/// |---|---|
+/// | hexes at most | 4096 |
+/// | count | 1 |
+/// | beam | 1000 |
+/// | cavities at most | 1,000,000 |
+/// | improve | no |
 #[derive(Clone, Copy, Debug)]
 pub struct FillOptions {
-    /// Most hexes a filling may have.
-    pub max_hexes: u32,
-    /// How many different fillings to look for.
-    pub count: usize,
-    /// How many cavities the beam keeps on each level.
-    pub beam: usize,
-    /// How many cavities to look at before giving up: a bound that does not depend on the clock.
-    pub max_cavities: u64,
-    /// Look on for smaller fillings after the first until the context stops the search or the beam is empty.
-    pub improve: bool,
+    max_hexes: u32,
+    count: usize,
+    beam: usize,
+    max_cavities: u64,
+    improve: bool,
 }
 
 impl Default for FillOptions {
     fn default() -> Self {
         Self { max_hexes: 4096, count: 1, beam: 1000, max_cavities: 1_000_000, improve: false }
+    }
+}
+
+impl FillOptions {
+    /// Most hexes a filling may have.
+    #[must_use]
+    pub fn with_max_hexes(self, max_hexes: u32) -> Self {
+        Self { max_hexes, ..self }
+    }
+
+    /// How many different fillings to look for.
+    #[must_use]
+    pub fn with_count(self, count: usize) -> Self {
+        Self { count, ..self }
+    }
+
+    /// How many cavities the beam keeps on each level.
+    #[must_use]
+    pub fn with_beam(self, beam: usize) -> Self {
+        Self { beam, ..self }
+    }
+
+    /// How many cavities to look at before giving up: a bound that does not depend on the clock.
+    #[must_use]
+    pub fn with_max_cavities(self, max_cavities: u64) -> Self {
+        Self { max_cavities, ..self }
+    }
+
+    /// Look on for smaller fillings after the first until the context stops the search or the beam is empty.
+    #[must_use]
+    pub fn with_improve(self, improve: bool) -> Self {
+        Self { improve, ..self }
+    }
+
+    /// How many cavities the beam keeps on each level.
+    pub fn beam(&self) -> usize {
+        self.beam
     }
 }
 

@@ -137,7 +137,7 @@ mod tests {
         let hollow = QuadSurface::try_new(all.len(), &quads).unwrap();
         let hexes = between(&hollow, &all).unwrap();
         let n_vertices = hexes.iter().flatten().max().unwrap() + 1;
-        let swept = Swept { n_vertices, hexes, front: Vec::new(), stopped: None };
+        let swept = Swept { n_vertices, hexes, plugs: 0, front: Vec::new(), stopped: None };
         assert!(judged(&hollow, &swept).is_multiple_of(96));
         assert!(between(&torus, &points).is_none());
     }

@@ -197,7 +197,7 @@ mod tests {
     /// A 2 x 2 x 2 box with its corner points, filled behind one pillow.
     fn pillowed_box() -> (QuadSurface, HexMesh, Vec<[f64; 3]>) {
         let surface = voxel_surface([2, 2, 2], |_| true).unwrap();
-        let options = ShellOptions { pillows: vec![1], ..ShellOptions::default() };
+        let options = ShellOptions::default().with_pillows(vec![1]);
         let mesh = shell(&surface, None, &options, &Context::default()).meshes.remove(0).mesh;
         let points = (0..mesh.n_vertices()).map(|v| [v as f64, (v * v % 7) as f64, (v % 3) as f64]).collect();
         (surface, mesh, points)
@@ -247,7 +247,7 @@ mod tests {
     #[test]
     fn without_a_pillow_nothing_is_cut() {
         let surface = voxel_surface([2, 2, 2], |_| true).unwrap();
-        let options = ShellOptions { pillows: vec![0], ..ShellOptions::default() };
+        let options = ShellOptions::default().with_pillows(vec![0]);
         let mesh = shell(&surface, None, &options, &Context::default()).meshes.remove(0).mesh;
         let points = vec![[0.0; 3]; mesh.n_vertices()];
         let layers = BoundaryLayers { count: 2, height: None, growth: 1.0 };

@@ -163,7 +163,13 @@ mod tests {
         assert!(!made.meshes.is_empty());
         for shelled in made.meshes {
             let hexes = shelled.mesh.hexes_raw();
-            let swept = Swept { n_vertices: shelled.mesh.n_vertices() as u32, hexes, front: Vec::new(), stopped: None };
+            let swept = Swept {
+                n_vertices: shelled.mesh.n_vertices() as u32,
+                hexes,
+                plugs: 0,
+                front: Vec::new(),
+                stopped: None,
+            };
             println!("{} hexes, {} pillows", judged(&surface, &swept), shelled.pillows);
         }
     }

@@ -44,7 +44,7 @@ impl Front {
             return None;
         }
         let surface = QuadSurface::try_new(self.n_vertices() as usize, &self.quads()).ok()?;
-        let options = FillOptions { max_cavities, beam: BEAM, ..FillOptions::default() };
+        let options = FillOptions::default().with_max_cavities(max_cavities).with_beam(BEAM);
         let quiet = Context { progress: None, ..*ctx };
         let outcome = fill_avoiding(&surface, &self.joined_pairs(), atlas, &options, &quiet)?;
         let filling = &outcome.fillings.first()?.mesh;

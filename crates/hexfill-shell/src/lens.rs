@@ -131,6 +131,8 @@ impl LensFinder {
 
     /// Collects the vertices inside the first `i` and `j` steps of the arcs; whether they are a disk of at most `limit` vertices.
     fn flood(&mut self, front: &Front, d: u32, i: usize, j: usize, limit: usize) -> bool {
+        // Marks with a time stamp: to clear them is to raise it, so a small lens costs its size and not that of the
+        // front.
         self.wall.clear(4 * front.n_slots() as usize);
         for &e in self.arcs[0][..i].iter().chain(&self.arcs[1][..j]) {
             self.wall.set(e, 0);

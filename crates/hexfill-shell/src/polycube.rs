@@ -180,7 +180,7 @@ mod tests {
         let wanted = wanted_hexes(&surface, Some(&points));
         let hexes = polycube(&surface, &develop(&surface, &wanted, Some(&points)).unwrap()).unwrap();
         let n_vertices = hexes.iter().flatten().max().unwrap() + 1;
-        let swept = Swept { n_vertices, hexes, front: Vec::new(), stopped: None };
+        let swept = Swept { n_vertices, hexes, plugs: 0, front: Vec::new(), stopped: None };
         Some(judged(&surface, &swept))
     }
 

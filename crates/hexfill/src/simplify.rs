@@ -126,8 +126,8 @@ pub(crate) fn simplified(
     atlas: Option<&Atlas>,
     ctx: &Context<'_>,
 ) -> Simplified {
-    if options.balls == 0 {
-        return collapse(mesh, options.collapse, ctx);
+    if options.balls() == 0 {
+        return collapse(mesh, options.collapses(), ctx);
     }
     simplify_mesh(mesh, atlas.unwrap_or_else(|| simplification_atlas()), options, ctx)
 }

@@ -94,6 +94,8 @@ pub(crate) fn quads_of_task(task: usize, hexes: &[[u32; 8]], stars: &Stars, tabl
             for k in 0..3 {
                 let (x, y, w) = (corner[(k + 1) % 3], corner[(k + 2) % 3], corner[3 + k]);
                 if v < x && v < y && v < w {
+                    // By the opposite corner first: that tells a quad at `v` apart in a proper mesh; the other two
+                    // make it certain in any.
                     near.push(([w, x.min(y), x.max(y)], code >> 3));
                 }
             }

@@ -98,6 +98,7 @@ fn spine(hexes: &[[u32; 8]], stars: &Stars, edges: &Edges, ctx: &Context<'_>) ->
             return None;
         }
         let last = (first + BATCH).min(n_tasks);
+        // Listed in parallel, joined in order: which quads are in the forest must not depend on threads.
         let lists = tasks(last - first, |i| quads_of_task(first + i, hexes, stars, &table));
         let left: Vec<[u32; 4]> = lists
             .into_iter()
@@ -140,6 +141,8 @@ impl Collapse {
         for (q, quad) in quads.iter().enumerate() {
             for &e in quad {
                 count[e as usize] += 1;
+                // No list of quads an edge: a free edge has one quad left, and then the exclusive or of those there
+                // were is its index.
                 mix[e as usize] ^= q as u32;
             }
         }
@@ -206,6 +209,7 @@ impl Collapse {
             if ctx.stop().is_some() {
                 return None;
             }
+            // What each edge amounts to in critical ones, 64 of them at once as bits of one word.
             image.fill(0);
             for (bit, &e) in columns.iter().enumerate() {
                 image[e as usize] = 1 << bit;

@@ -382,6 +382,7 @@ impl<'a> StarJudge<'a> {
                 let opposite = near[3 + k];
                 let mut key = [near[(k + 1) % 3], near[(k + 2) % 3], opposite];
                 key.sort_unstable();
+                // Each at its smallest vertex, so that it is told once.
                 if v < key[0] {
                     quads.push((key, opposite, codes[i] >> 3));
                 }

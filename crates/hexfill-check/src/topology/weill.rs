@@ -110,6 +110,7 @@ fn judge_earlier(
     around: &[Vec<u32>],
     findings: &mut Findings,
 ) {
+    // A hex occurs as often as it shares vertices, so its run in the sorted list is the number rule 3 asks for.
     let mut earlier: Vec<u32> = hex.iter().flat_map(|&v| around[v as usize].iter().copied()).collect();
     earlier.sort_unstable();
     for same in earlier.chunk_by(|a, b| a == b) {

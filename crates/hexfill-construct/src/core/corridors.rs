@@ -8,6 +8,7 @@
 use super::complex::TetComplex;
 use crate::error::ConstructError;
 use crate::ids::{FaceId, TetId};
+use crate::joins::no_chain::NoChain;
 use crate::surface::existence::Existence;
 use hexfill_mesh::{Forest, IdVec, QuadId, QuadSurface};
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
@@ -53,10 +54,7 @@ pub(crate) fn corridors(
             // Corridors do not share tets: their balls are filled one by one and must not overlap.
             let Some(tets) = ways.shortest(a, &odd) else {
                 let b = odd.first().copied().unwrap_or(a);
-                return Err(ConstructError::OddJoin {
-                    components: [a, b],
-                    reason: "earlier chains bar the way".into(),
-                });
+                return Err(ConstructError::OddJoin { components: [a, b], reason: NoChain::Barred });
             };
             let [start, end] = [tets[0], tets[tets.len() - 1]];
             let b = ways.component_at(end).unwrap_or(a);

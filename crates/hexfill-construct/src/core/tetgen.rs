@@ -15,6 +15,7 @@ use super::request::TetRequest;
 use super::used::Used;
 use crate::error::ConstructError;
 use crate::ids::TetId;
+use crate::misfit::TetMisfit;
 use crate::missing::MissingInterior;
 use hexfill_geometry::tet_volume;
 use hexfill_mesh::{Context, IdVec, StopReason, VertexId};
@@ -44,7 +45,7 @@ const SWITCHES: [&str; 2] = ["-pYQ", "-pYMQ"];
 /// Why there is no answer.
 enum Failure {
     Reason(MissingInterior),
-    Boundary(String),
+    Boundary(TetMisfit),
     Stopped(StopReason),
 }
 
@@ -128,7 +129,7 @@ impl TetgenTets {
             .map_err(|what| MissingInterior::TetgenAnswer { program: self.program.display().to_string(), what })?;
         let n_own = own.vertices.len();
         if found.len() < n_own {
-            return Err(Failure::Boundary(format!("tetgen returned {} vertices of {n_own}", found.len())));
+            return Err(Failure::Boundary(TetMisfit::TetgenVertices { given: found.len(), needed: n_own }));
         }
         let tets = tets.into_iter().map(|t| t.map(|v| own.back(v))).collect();
         let mut all = points.to_vec();
@@ -183,7 +184,7 @@ fn inside(
     request: &TetRequest<'_>,
     points: &[[f64; 3]],
     mut tets: IdVec<TetId, [VertexId; 4]>,
-) -> Result<Vec<[VertexId; 4]>, String> {
+) -> Result<Vec<[VertexId; 4]>, TetMisfit> {
     // Every face with the tets it belongs to, in order.
     let mut faces: Vec<([VertexId; 3], TetId)> = Vec::with_capacity(4 * tets.len());
     for (t, tet) in tets.enumerate() {
@@ -200,10 +201,7 @@ fn inside(
     walls.sort_unstable();
     let missing = request.triangles.iter().filter(|&&t| with(sorted(t)).next().is_none()).count();
     if missing > 0 {
-        return Err(format!(
-            "tetgen did not keep {missing} of {} triangles: it split or flipped the boundary",
-            request.triangles.len()
-        ));
+        return Err(TetMisfit::TetgenBoundary { missing, triangles: request.triangles.len() });
     }
     // All tets of tetgen turn the same way, by exact predicates; the sum of their volumes tells which.
     let total: f64 = tets.iter().map(|t| tet_volume(t.map(|v| points[v.index()]))).sum();
@@ -221,10 +219,7 @@ fn inside(
     for &triangle in request.triangles {
         match with(sorted(triangle)).map(|f| f.1).find(|&t| shows(&tets[t], triangle)) {
             Some(t) => stack.push(t),
-            None => {
-                let triangle = triangle.map(|v| v.0);
-                return Err(format!("tetgen left the inner side of triangle {triangle:?} empty: does it face inward?"));
-            }
+            None => return Err(TetMisfit::TetgenEmptySide { vertices: triangle }),
         }
     }
     // From the wall inward, never through a wall: cavities and the hull's pockets, which tetgen fills as well, are

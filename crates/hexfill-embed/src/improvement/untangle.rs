@@ -17,6 +17,14 @@ use crate::solvers::lbfgs::{Limits, minimise};
 use hexfill_geometry::{Vector, det};
 use hexfill_mesh::{Context, StopReason};
 
+/// One bad cell in so many is too many to hope for the rest.
+const HOPELESS: usize = 20;
+
+/// Whether too many cells are bad.
+pub(crate) fn is_hopeless(n_bad: usize, problem: &Problem) -> bool {
+    HOPELESS * n_bad > problem.hexes.len()
+}
+
 /// How long to try.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct UntangleLimits {
@@ -28,6 +36,8 @@ pub(crate) struct UntangleLimits {
     pub(crate) total: usize,
     /// Rounds to go on once everything is positive: further shape improvement.
     pub(crate) extra_rounds: usize,
+    /// Give up after so many rounds if more than one cell in [`HOPELESS`] still has a corner that is not positive.
+    pub(crate) late: usize,
     /// Give up after so many rounds with neither fewer bad cells nor a better smallest determinant.
     pub(crate) patience: usize,
     /// Weight of the volume term of the energy.
@@ -37,7 +47,15 @@ pub(crate) struct UntangleLimits {
 impl UntangleLimits {
     /// The usual limits, shapes only.
     pub(crate) const fn new() -> Self {
-        Self { rounds: 100, iterations: 200, total: usize::MAX, extra_rounds: 0, patience: 15, volume_weight: 0.0 }
+        Self {
+            rounds: 100,
+            iterations: 200,
+            total: usize::MAX,
+            extra_rounds: 0,
+            late: usize::MAX,
+            patience: 15,
+            volume_weight: 0.0,
+        }
     }
 }
 
@@ -79,7 +97,9 @@ pub(crate) fn untangle(
         if stopped.is_some() {
             return stopped;
         }
-        if spent >= limits.total || progress.is_stale(energy.n_not_positive(), smallest) {
+        let n_bad = energy.n_not_positive();
+        let is_hopeless = round + 1 >= limits.late && is_hopeless(n_bad, problem);
+        if spent >= limits.total || is_hopeless || progress.is_stale(n_bad, smallest) {
             break;
         }
         energy.epsilon = next_epsilon(energy.epsilon, smallest, before, after);

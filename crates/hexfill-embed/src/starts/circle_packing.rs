@@ -45,6 +45,8 @@ impl Packing {
                 (degrees, std::cmp::Reverse(d))
             })
             .expect("a sphere has edges");
+        // A circle through the point at infinity is a line: sending one touching point there takes four circles out
+        // of the unknowns, and the others keep plain angle sums.
         let mut is_line = vec![false; n];
         is_line[surface.origin(infinite).index()] = true;
         is_line[surface.target(infinite).index()] = true;

@@ -97,6 +97,8 @@ pub fn voxels(
             if inside(other) {
                 continue;
             }
+            // Points by where they are: two cells that share an edge only make that edge non-manifold, and the
+            // surface is refused.
             quads.push(facet.map(|corner| {
                 let point: [i32; 3] = std::array::from_fn(|k| cell[k] + i32::from(POSITIONS[corner][k]));
                 *ids.entry(point).or_insert_with(|| {

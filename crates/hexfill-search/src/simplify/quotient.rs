@@ -66,6 +66,8 @@ impl Quotient {
         if kept.hexes && self.removed.iter().any(|&h| mesh.hex(h).iter().any(|&v| on_boundary(v))) {
             return Err(Refusal::Boundary);
         }
+        // The cheapest refusal first; two boundary vertices may still come together through others, which the trees
+        // tell.
         if self.vertices.iter().any(|pair| pair.iter().all(|&v| on_boundary(v))) {
             return Err(Refusal::Boundary);
         }

@@ -22,14 +22,13 @@ pub(crate) fn search(
     result: &mut FillResult,
 ) -> Result<(), FillError> {
     let atlas = options.atlas.as_deref().unwrap_or_else(|| suited(surface, options));
-    let inward = InwardOptions {
-        max_hexes: options.max_hexes,
+    let inward = InwardOptions::default()
+        .with_max_hexes(options.max_hexes)
         // Several placements may be isomorphic as meshes: look for more than are asked for.
-        count: if options.count == 1 { 1 } else { 8 * options.count },
-        improve: options.improve,
-        max_cavities: if options.improve { u64::MAX } else { options.inward_cavities },
-        beam: options.beam,
-    };
+        .with_count(if options.count == 1 { 1 } else { 8 * options.count })
+        .with_improve(options.improve)
+        .with_max_cavities(if options.improve { u64::MAX } else { options.inward_cavities })
+        .with_beam(options.beam);
     let outcome = fill_from_atlas(surface, atlas, &inward, ctx).expect("the caller checked: a small sphere");
     if outcome.stop != StopReason::Finished {
         result.stop = outcome.stop;
@@ -64,7 +63,7 @@ pub(crate) fn smallest_on_record(
     options: &FillOptions,
     ctx: &Context<'_>,
 ) -> Result<Option<Filled>, FillError> {
-    let look_up = InwardOptions { max_hexes: options.max_hexes, max_cavities: 1, ..InwardOptions::default() };
+    let look_up = InwardOptions::default().with_max_hexes(options.max_hexes).with_max_cavities(1);
     let outcome = fill_from_atlas(surface, Atlas::fewest(), &look_up, ctx).expect("the caller checked: a small sphere");
     let Some(filling) = outcome.fillings.into_iter().next() else { return Ok(None) };
     let filled = Filled::by(Route::Atlas, filling.mesh);
