@@ -33,7 +33,7 @@ pub fn collapse(mesh: &HexMesh, which: Collapse, ctx: &Context<'_>) -> Simplifie
     if report.collapsed == 0 {
         return Simplified { report, ..Simplified::unchanged(mesh) };
     }
-    let (mesh, origin) = Snapshot::of(&live).settled(mesh);
+    let (mesh, origin, _) = Snapshot::of(&live).settled(mesh);
     Simplified { mesh, origin, report }
 }
 
@@ -55,7 +55,7 @@ pub fn single_sheet_collapses(mesh: &HexMesh, which: Collapse) -> Vec<Simplified
         live.merge(&quotient.removed, &quotient.facets, &merges);
         let mut report = SimplifyReport::new(mesh.n_hexes());
         (report.sheets, report.collapsed, report.after) = (1, mesh.n_hexes() - live.n_hexes(), live.n_hexes());
-        let (mesh, origin) = Snapshot::of(&live).settled(mesh);
+        let (mesh, origin, _) = Snapshot::of(&live).settled(mesh);
         Some(Simplified { mesh, origin, report })
     };
     closed.into_iter().filter_map(one).collect()
