@@ -73,6 +73,33 @@ fn collapses_alone_need_no_balls() {
 }
 
 #[test]
+fn certificates_are_kept() {
+    let dir = tempfile::tempdir().unwrap();
+    let args = ["fill", ":cube", "--strategy", "construct", "-o", "large.json"];
+    let (code, _, err) = hexfill(dir.path(), &args);
+    assert_eq!(code, 0, "{err}");
+    let mut reports = Vec::new();
+    for (out, threads) in [("small.json", "1"), ("again.json", "2")] {
+        let args = ["simplify", "large.json", "-o", out, "--keep-valid", "--balls", "500", "-j", threads, "--json"];
+        let (code, report, err) = hexfill(dir.path(), &args);
+        assert_eq!(code, 0, "{err}");
+        reports.push(json(&report));
+    }
+    let number = |key: &str| reports[0][key].as_u64().unwrap();
+    assert!(number("hexes") < number("hexes_before") && number("refused") > 0, "{}", reports[0]);
+    let read = |file: &str| std::fs::read(dir.path().join(file)).unwrap();
+    assert_eq!(read("small.json"), read("again.json"));
+    let checked = |file: &str| {
+        let (code, out, err) = hexfill(dir.path(), &["check", file, "--surface", ":cube", "--json"]);
+        assert_eq!(code, 0, "every hex certified: {err}");
+        json(&out)["geometry"]["quality"]["certified_scaled_jacobian"][0].as_f64().unwrap()
+    };
+    assert!(checked("small.json") >= checked("large.json"));
+    let (code, _, _) = hexfill(dir.path(), &["simplify", "large.json", "-o", "x.json", "--keep-valid", "--heat", "9"]);
+    assert_eq!(code, 2);
+}
+
+#[test]
 fn what_cannot_become_smaller_is_written_as_it_was() {
     let dir = tempfile::tempdir().unwrap();
     let (code, _, err) = hexfill(dir.path(), &["fill", ":cube", "-o", "cube.json"]);

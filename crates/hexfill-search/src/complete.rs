@@ -10,6 +10,8 @@ use crate::atlas::{Atlas, short_hash};
 use crate::backward::{Breadth, Way, shorter_way};
 use crate::canonical::Canonical;
 use crate::cavity::Cavity;
+use crate::exchange::smaller_filling;
+use crate::flip::Flip;
 use crate::grow::{ClassHash, class_hash};
 use crate::known::Known;
 use hexfill_mesh::{Context, StopReason, generate::all_spheres_up_to};
@@ -32,6 +34,9 @@ const EFFORTS: [Breadth; 6] = [
     Breadth { depth: 20, beam: 20_000, first: false },
 ];
 
+/// Balls tried for each large filling in the first round of exchanges.
+const FIRST_BALLS: u64 = 2_000;
+
 /// What to complete.
 #[derive(Clone, Copy, Debug)]
 pub struct CompleteOptions {
@@ -41,11 +46,13 @@ pub struct CompleteOptions {
     pub max_hexes: u32,
     /// How many efforts to make, each wider than the one before.
     pub efforts: usize,
+    /// How many rounds of exchanging balls to make, each with four times as many as the one before.
+    pub rounds: usize,
 }
 
 impl Default for CompleteOptions {
     fn default() -> Self {
-        Self { max_quads: 20, max_hexes: 56, efforts: EFFORTS.len() }
+        Self { max_quads: 20, max_hexes: 56, efforts: EFFORTS.len(), rounds: 3 }
     }
 }
 
@@ -108,13 +115,20 @@ pub fn complete(
             break;
         }
     }
+    for round in 0..options.rounds {
+        if let Some(stop) = ctx.stop() {
+            report.stop = stop;
+            break;
+        }
+        exchange_round(&mut known, &targets, FIRST_BALLS << (2 * round), options.max_hexes, ctx);
+    }
     for (target, before) in targets.iter().zip(&with_kept) {
         let hexes = known.fewest(target.class);
         report.missing += usize::from(hexes.is_none());
         report.found += usize::from(hexes.is_some() && before.is_none());
         report.large += usize::from(hexes.is_some_and(|h| h > options.max_hexes));
     }
-    let atlas = known.into_atlas(|class| names.contains(&short_hash(class)));
+    let atlas = known.to_atlas(|class| names.contains(&short_hash(class)));
     Some((atlas.pruned(1, |_, _| true), report))
 }
 
@@ -154,6 +168,29 @@ fn shorten(known: &mut Known, targets: &[Target], breadth: &Breadth, max_hexes: 
     }
 }
 
+/// Exchanges balls in every filling with more than `max_hexes` hexes, and fills what has none.
+fn exchange_round(known: &mut Known, targets: &[Target], balls: u64, max_hexes: u32, ctx: &Context<'_>) {
+    let atlas = known.to_atlas(|_| true);
+    let too_many = |t: &&Target| known.fewest(t.class).is_none_or(|hexes| hexes > max_hexes);
+    let wanted: Vec<&Target> = targets.iter().filter(too_many).collect();
+    let mut found = 0;
+    for (i, batch) in wanted.chunks(BATCH).enumerate() {
+        ctx.report("atlas exchanges", (i * BATCH) as u64, Some(wanted.len() as u64), || {
+            format!("{balls} balls each, {found} found or shortened")
+        });
+        let search = |target: &&Target| {
+            // A filling of any size is better than none: the next round makes it smaller.
+            let limit = known.fewest(target.class).unwrap_or(u32::MAX);
+            smaller_filling(&target.sphere, target.class, limit, known, &atlas, balls, ctx)
+        };
+        let fillings: Vec<Option<Vec<Flip>>> = batch.par_iter().map(search).collect();
+        for flips in fillings.into_iter().flatten() {
+            known.add_ball(&flips).expect("a shelled ball can be glued again");
+            found += 1;
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -168,7 +205,7 @@ mod tests {
         let grown = Atlas::from_growth(&growth);
         // The classes of 8 to 12 quads are left to the search, as far as they are no steps to others.
         let kept = Atlas::embedded().pruned(1, |quads, _| quads == 14 || quads == 16);
-        let options = CompleteOptions { max_quads: 12, max_hexes: 56, efforts: 2 };
+        let options = CompleteOptions { max_quads: 12, max_hexes: 56, efforts: 2, rounds: 1 };
         let run = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| complete(&grown, &kept, &options, &Context::default()).unwrap())

@@ -8,7 +8,7 @@ use crate::atlas::{Atlas, STEP, short_hash};
 use crate::ball::{Ball, canonical_cavity};
 use crate::canonical::Canonical;
 use crate::cavity::Cavity;
-use crate::flip::{Flip, apply, legal_flips};
+use crate::flip::{Flip, apply, is_legal, legal_flips, place};
 use crate::grow::{ClassHash, GrowOptions, Growth, MAX_CAP, PackedPairs, State, class_hash, pack};
 
 /// A growing table of states. See the module page.
@@ -58,6 +58,12 @@ impl Known {
         self.growth.states_of(class)
     }
 
+    /// The smallest filling of a class.
+    pub(crate) fn smallest(&self, class: ClassHash) -> Option<Ball> {
+        let state = self.states_of(class).min_by_key(|&s| (self.hexes(s), s))?;
+        Ball::replay(self.growth.flips_to(state))
+    }
+
     /// Fewest hexes of any state of a class.
     pub(crate) fn fewest(&self, class: ClassHash) -> Option<u32> {
         self.states_of(class).map(|state| self.hexes(state)).min()
@@ -79,6 +85,23 @@ impl Known {
         let mut at = start;
         for step in steps {
             at = self.add(at, step)?;
+        }
+        Some(at)
+    }
+
+    /// Adds the states on the way of a ball from one cube; returns the last. `None` if a flip is not legal where it stands.
+    pub(crate) fn add_ball(&mut self, flips: &[Flip]) -> Option<u32> {
+        let mut canonical = Canonical::new();
+        let mut boundary = Cavity::cube();
+        let mut at = 0;
+        for &flip in flips {
+            let form = canonical_cavity(&boundary, &mut canonical).cavity;
+            let placement = place(&form, &form.degrees(), flip).filter(|p| is_legal(p, &form.marked()))?;
+            boundary = apply(&form, &placement).0;
+            if boundary.n_quads() > MAX_CAP {
+                return None;
+            }
+            at = self.add(at, step(flip, &boundary, &mut canonical))?;
         }
         Some(at)
     }
@@ -135,7 +158,7 @@ impl Known {
     }
 
     /// The states as an atlas in which the classes that `keep` chooses have names and the others are steps.
-    pub(crate) fn into_atlas(self, keep: impl Fn(ClassHash) -> bool) -> Atlas {
+    pub(crate) fn to_atlas(&self, keep: impl Fn(ClassHash) -> bool) -> Atlas {
         let mut order: Vec<u32> = (0..self.n_states() as u32).collect();
         order.sort_by_key(|&s| self.hexes[s as usize]);
         let mut renumbered = vec![0; order.len()];
@@ -157,18 +180,24 @@ impl Known {
     }
 }
 
+/// The step of a flip that leaves this cavity.
+fn step(flip: Flip, after: &Cavity, canonical: &mut Canonical) -> Step {
+    canonical.compute(after);
+    let blocked = pack(&canonical.blocked_image(after).0, after.n_vertices());
+    Step { flip, class: class_hash(canonical.code()), blocked, n_blocked: after.n_blocked() as u16 }
+}
+
 /// Finds flips that lead from a ball with this boundary through these classes, depth first.
 fn find_way(boundary: &Cavity, classes: &[ClassHash], canonical: &mut Canonical, steps: &mut Vec<Step>) -> bool {
     let Some((&class, rest)) = classes.split_first() else { return true };
     let form = canonical_cavity(boundary, canonical).cavity;
     for placement in legal_flips(&form, MAX_CAP) {
         let child = apply(&form, &placement).0;
-        canonical.compute(&child);
-        if class_hash(canonical.code()) != class {
+        let step = step(placement.flip, &child, canonical);
+        if step.class != class {
             continue;
         }
-        let blocked = pack(&canonical.blocked_image(&child).0, child.n_vertices());
-        steps.push(Step { flip: placement.flip, class, blocked, n_blocked: child.n_blocked() as u16 });
+        steps.push(step);
         if find_way(&child, rest, canonical, steps) {
             return true;
         }

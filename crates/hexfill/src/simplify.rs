@@ -2,11 +2,13 @@
 //!
 //! Source: Verhetsel et al. 2018, by way of `hexfill-search`.
 
+use crate::keep_valid::Valid;
 use hexfill_check::{Judged, Level, Parts, judge};
 use hexfill_io::{MeshData, TagOn};
 use hexfill_mesh::{Context, HexMesh, HexMeshError, VertexId};
 use hexfill_search::{
     Atlas, Simplified, SimplifyOptions, SimplifyReport, collapse, simplification_atlas, simplify as simplify_mesh,
+    simplify_gated,
 };
 
 /// Why a mesh cannot be simplified.
@@ -74,6 +76,40 @@ pub fn simplify(
     // Proper before is what the exchange of balls keeps; of an improper mesh nothing could be promised.
     judged(&mesh, None).map_err(|rules| SimplifyError::NotProper { rules })?;
     let made = simplified(&mesh, options, atlas, ctx);
+    let points = data.has_coordinates.then(|| carried_positions(&made.mesh, &made.origin, &data.points));
+    carried(data, &mesh, made, points)
+}
+
+/// [`simplify`] that never worsens the geometry: an exchange of balls is made only if its new points have positions with which no more hexes fail the judge's certificate
+/// than before and the smallest certified scaled Jacobian of the hexes exchanged is no smaller. No point that stays is moved, and nothing is collapsed; only exchanges for
+/// fewer hexes are looked for.
+///
+/// # Errors
+/// As [`simplify`]; data without coordinates are treated as [`simplify`] treats them.
+pub fn simplify_keeping_valid(
+    data: &MeshData,
+    options: &SimplifyOptions,
+    atlas: Option<&Atlas>,
+    ctx: &Context<'_>,
+) -> Result<SimplifiedData, SimplifyError> {
+    if !data.has_coordinates {
+        return simplify(data, options, atlas, ctx);
+    }
+    let mesh = HexMesh::try_new(data.vertex_count(), &data.hexes)?;
+    judged(&mesh, None).map_err(|rules| SimplifyError::NotProper { rules })?;
+    let mut gate = Valid::new(data.points.clone());
+    let (made, ids) = simplify_gated(&mesh, atlas.unwrap_or_else(|| simplification_atlas()), options, &mut gate, ctx);
+    let points = ids.iter().map(|&v| gate.point(v)).collect();
+    carried(data, &mesh, made, Some(points))
+}
+
+/// What was made of the mesh `before` as file data, at these positions.
+fn carried(
+    data: &MeshData,
+    mesh: &HexMesh,
+    made: Simplified,
+    points: Option<Vec<[f64; 3]>>,
+) -> Result<SimplifiedData, SimplifyError> {
     if made.report.after == made.report.before {
         return Ok(SimplifiedData { data: data.clone(), origin: made.origin, report: made.report });
     }
@@ -113,8 +149,8 @@ pub fn simplify(
     out.point_data = data.point_data.iter().map(|(name, values)| (name.clone(), at(values))).collect();
     let tag = |tags: &Vec<i64>| made.origin.iter().map(|o| o.map_or(0, |v| tags[v.index()])).collect();
     out.point_tags = data.point_tags.as_ref().map(tag);
-    if data.has_coordinates {
-        out.points = carried_positions(&made.mesh, &made.origin, &data.points);
+    if let Some(points) = points {
+        out.points = points;
     }
     Ok(SimplifiedData { data: out, origin: made.origin, report: made.report })
 }

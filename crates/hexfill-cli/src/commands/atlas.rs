@@ -64,6 +64,9 @@ enum AtlasCommand {
         /// Searches backward to make, each wider (and many times slower) than the one before.
         #[arg(long, default_value_t = 3)]
         efforts: usize,
+        /// Rounds of exchanging balls in fillings that are still too large, each four times as long as the one before.
+        #[arg(long, default_value_t = 3)]
+        rounds: usize,
         /// The classes of this atlas stay, with no more hexes than there [default: the embedded one].
         #[arg(long, value_name = "FILE")]
         keep: Option<PathBuf>,
@@ -119,14 +122,19 @@ pub(crate) fn run(args: &AtlasArgs, console: &Console, ctx: &Context<'_>) -> any
             let width = if *width == 0 { u32::MAX } else { *width };
             build(output, GrowOptions { cap: *cap as usize, width }, *beam, *levels, console, ctx)
         }
-        AtlasCommand::Complete { file, output, cap, levels, beam, max_quads, max_hexes, efforts, keep } => {
+        AtlasCommand::Complete { file, output, cap, levels, beam, max_quads, max_hexes, efforts, rounds, keep } => {
             files::check_folder(output)?;
             files::check_distinct(&[&file.to_string_lossy(), output])?;
             let grown = build(file, GrowOptions { cap: *cap as usize, width: 1 }, Some(*beam), *levels, console, ctx)?;
             if grown != Exit::Done {
                 return Ok(grown);
             }
-            let options = CompleteOptions { max_quads: *max_quads as usize, max_hexes: *max_hexes, efforts: *efforts };
+            let options = CompleteOptions {
+                max_quads: *max_quads as usize,
+                max_hexes: *max_hexes,
+                efforts: *efforts,
+                rounds: *rounds,
+            };
             complete_atlas(file, output, keep.as_deref(), &options, console, ctx)
         }
         AtlasCommand::Stats { file } => {

@@ -40,6 +40,10 @@ pub(crate) struct SimplifyArgs {
     /// nothing in the course of the work. 0: never more hexes.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=999))]
     heat: Option<u32>,
+    /// Never worsen the geometry: only exchanges for fewer hexes whose new points have positions that keep every certificate and the smallest certified scaled Jacobian
+    /// of the hexes exchanged. Nothing is collapsed, no point that stays is moved.
+    #[arg(long, conflicts_with_all = ["collapse_only", "heat"])]
+    keep_valid: bool,
     /// An atlas to use instead of the one that is grown at the start.
     #[arg(long, value_name = "FILE")]
     atlas: Option<PathBuf>,
@@ -66,6 +70,8 @@ struct Output {
     looked_up: u64,
     /// Exchanges for fewer hexes, as many, more.
     exchanges: [u64; 3],
+    /// Exchanges that --keep-valid refused.
+    refused: u64,
     stopped: StopReason,
     seconds: f64,
 }
@@ -104,7 +110,11 @@ pub(crate) fn run(args: &SimplifyArgs, console: &Console, ctx: &Context<'_>) -> 
     if let Some(heat) = args.heat {
         options = options.with_heat(heat);
     }
-    let mut made = hexfill::simplify(&data, &options, atlas.as_ref(), ctx).with_context(|| args.mesh.clone())?;
+    if args.keep_valid && !data.has_coordinates {
+        bail!("{} has no coordinates, so that there is nothing for --keep-valid to keep", args.mesh);
+    }
+    let simplify = if args.keep_valid { hexfill::simplify_keeping_valid } else { hexfill::simplify };
+    let mut made = simplify(&data, &options, atlas.as_ref(), ctx).with_context(|| args.mesh.clone())?;
     for note in std::mem::take(&mut made.data.notes) {
         console.note(note);
     }
@@ -125,7 +135,10 @@ pub(crate) fn run(args: &SimplifyArgs, console: &Console, ctx: &Context<'_>) -> 
     ));
     console.say(how);
     if made.data.has_coordinates && report.after < report.before {
-        console.say("geometry: vertices that stay were not moved, new ones lie at means of their neighbours; run `hexfill embed` next");
+        console.say(match args.keep_valid {
+            true => "geometry: vertices that stay were not moved, no certificate was lost",
+            false => "geometry: vertices that stay were not moved, new ones lie at means of their neighbours; run `hexfill embed` next",
+        });
     }
     console.say(format!("written: {}", args.output));
     if console.json {
@@ -141,6 +154,7 @@ pub(crate) fn run(args: &SimplifyArgs, console: &Console, ctx: &Context<'_>) -> 
             balls: report.balls,
             looked_up: report.looked_up,
             exchanges: report.exchanges,
+            refused: report.refused,
             stopped: report.stop,
             seconds,
         })?;

@@ -18,6 +18,7 @@ mod collapse;
 #[cfg(test)]
 mod collapse_tests;
 mod column_collapse;
+mod gate;
 mod live;
 mod offer;
 mod quotient;
@@ -29,10 +30,13 @@ use crate::cavity::MAX_QUADS;
 use crate::grow::{GrowOptions, Growth};
 use collapse::collapse_live;
 pub use collapse::{Collapse, WithoutSheet, collapse, single_sheet_collapses};
+pub use gate::Gate;
 use hexfill_mesh::{Context, HexMesh, StopReason, VertexId};
-use live::{LiveMesh, NONE};
+pub(crate) use live::LiveMesh;
+use live::NONE;
 use offer::{Offer, Search, Worker, sequence};
 use rayon::prelude::*;
+pub(crate) use region::Region;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, OnceLock};
 use std::time::{Duration, Instant};
@@ -124,6 +128,8 @@ pub struct SimplifyReport {
     pub looked_up: u64,
     /// Exchanges for fewer hexes, for as many, for more.
     pub exchanges: [u64; 3],
+    /// Exchanges that a [`Gate`] refused.
+    pub refused: u64,
     /// Why the work ended.
     pub stop: StopReason,
 }
@@ -139,6 +145,7 @@ impl SimplifyReport {
             balls: 0,
             looked_up: 0,
             exchanges: [0; 3],
+            refused: 0,
             stop: StopReason::Finished,
         }
     }
@@ -188,6 +195,7 @@ impl Simplified {
         report.balls += new.balls;
         report.looked_up += new.looked_up;
         report.exchanges = [0, 1, 2].map(|i| report.exchanges[i] + new.exchanges[i]);
+        report.refused += new.refused;
         report.stop = new.stop;
         self
     }
@@ -200,10 +208,10 @@ impl Simplified {
 /// some 20 bytes a hex for each thread.
 pub fn simplify(mesh: &HexMesh, atlas: &Atlas, options: &SimplifyOptions, ctx: &Context<'_>) -> Simplified {
     if options.collapse == Collapse::Nothing {
-        return exchange_balls(mesh, atlas, options, ctx);
+        return exchange_balls(mesh, atlas, options, None, ctx).0;
     }
     let made = collapse(mesh, options.collapse, ctx);
-    let exchanged = exchange_balls(&made.mesh, atlas, options, ctx);
+    let exchanged = exchange_balls(&made.mesh, atlas, options, None, ctx).0;
     let is_other = exchanged.report.after < made.report.after;
     let made = made.then(exchanged);
     if !is_other || made.report.stop != StopReason::Finished {
@@ -213,11 +221,29 @@ pub fn simplify(mesh: &HexMesh, atlas: &Atlas, options: &SimplifyOptions, ctx: &
     made.then(last)
 }
 
+/// [`simplify`] by exchanges for fewer hexes alone, each of which `gate` may refuse: no collapses, no detours. Also returns, per vertex of the result, the id
+/// it had for the gate.
+pub fn simplify_gated(
+    mesh: &HexMesh,
+    atlas: &Atlas,
+    options: &SimplifyOptions,
+    gate: &mut dyn Gate,
+    ctx: &Context<'_>,
+) -> (Simplified, Vec<u32>) {
+    exchange_balls(mesh, atlas, &options.with_collapse(Collapse::Nothing), Some(gate), ctx)
+}
+
 /// Thousandths of the work between two collapses.
 const COLLAPSE_EVERY: u64 = 50;
 
-/// The balls of [`simplify`], with collapses between them.
-fn exchange_balls(mesh: &HexMesh, atlas: &Atlas, options: &SimplifyOptions, ctx: &Context<'_>) -> Simplified {
+/// The balls of [`simplify`], with collapses between them; with a gate, those that save hexes. Also the id in the live mesh of every vertex of the result.
+fn exchange_balls(
+    mesh: &HexMesh,
+    atlas: &Atlas,
+    options: &SimplifyOptions,
+    mut gate: Option<&mut dyn Gate>,
+    ctx: &Context<'_>,
+) -> (Simplified, Vec<u32>) {
     let mut live = LiveMesh::new(mesh);
     let mut report = SimplifyReport::new(mesh.n_hexes());
     let mut workers: Vec<Worker<'_>> = (0..rayon::current_num_threads()).map(|_| Worker::new(atlas)).collect();
@@ -237,15 +263,14 @@ fn exchange_balls(mesh: &HexMesh, atlas: &Atlas, options: &SimplifyOptions, ctx:
             collapsed_at = done / COLLAPSE_EVERY;
             collapse_live(&mut live, &is_boundary, options.collapse, &mut report, ctx);
         }
-        let search = search_of(options, done);
+        // A gate is asked about every exchange, so none is wasted on going up or sideways.
+        let search = search_of(options, if gate.is_some() { 0 } else { done });
         let seen = live.exchanges();
         for offer in offers(&live, &mut workers, report.balls, size, &search, ctx) {
             // Blocked pairs far from the ball may have changed too, through vertices they share: hence the second
             // question.
             if live.are_untouched_since(&offer.removed, seen) && still_fits(&live, &offer, seen) {
-                let kind = if offer.gain > 0 { 0 } else { 1 + usize::from(offer.gain < 0) };
-                report.exchanges[kind] += 1;
-                live.exchange(&offer.removed, &offer.added, offer.first_new);
+                make(&mut live, &offer, &mut gate, &mut report);
             }
         }
         report.balls += size;
@@ -263,11 +288,30 @@ fn exchange_balls(mesh: &HexMesh, atlas: &Atlas, options: &SimplifyOptions, ctx:
         best = Snapshot::of(&live);
     }
     if best.hexes.len() >= mesh.n_hexes() {
-        return Simplified { report, ..Simplified::unchanged(mesh) };
+        let ids = (0..mesh.n_vertices() as u32).collect();
+        return (Simplified { report, ..Simplified::unchanged(mesh) }, ids);
     }
-    let (mesh, origin) = best.settled(mesh);
+    let (mesh, origin, ids) = best.settled(mesh);
     report.after = mesh.n_hexes();
-    Simplified { mesh, origin, report }
+    (Simplified { mesh, origin, report }, ids)
+}
+
+/// Makes an exchange, unless the gate refuses it.
+fn make(live: &mut LiveMesh, offer: &Offer, gate: &mut Option<&mut dyn Gate>, report: &mut SimplifyReport) {
+    if let Some(gate) = gate {
+        let removed: Vec<[u32; 8]> = offer.removed.iter().map(|&h| *live.hex(h)).collect();
+        if !gate.admits(&removed, &offer.added, offer.first_new) {
+            report.refused += 1;
+            return;
+        }
+    }
+    let kind = if offer.gain > 0 { 0 } else { 1 + usize::from(offer.gain < 0) };
+    report.exchanges[kind] += 1;
+    let ids = live.exchange(&offer.removed, &offer.added, offer.first_new);
+    if let Some(gate) = gate {
+        let made: Vec<[u32; 8]> = ids.iter().map(|&h| *live.hex(h)).collect();
+        gate.made(&made);
+    }
 }
 
 /// The mesh as it stood when it was smallest.
@@ -285,32 +329,35 @@ impl Snapshot {
         }
     }
 
-    /// As a mesh with vertices numbered anew: the old ones in their order, then the new ones in theirs.
-    fn settled(&self, input: &HexMesh) -> (HexMesh, Vec<Option<VertexId>>) {
+    /// As a mesh with vertices numbered anew: the old ones in their order, then the new ones in theirs. Per vertex also the one of the input and the id it
+    /// had until now.
+    fn settled(&self, input: &HexMesh) -> (HexMesh, Vec<Option<VertexId>>, Vec<u32>) {
         let used_before = input.used_vertices();
         let mut used = vec![false; self.is_new.len()];
         for &v in self.hexes.iter().flatten() {
             used[v as usize] = true;
         }
         let mut number = vec![NONE; used.len()];
-        let mut origin = Vec::new();
+        let (mut origin, mut ids) = (Vec::new(), Vec::new());
         for v in 0..input.n_vertices() {
             // Vertices that no hex used stay, as the ids of a surface must not shift; slots that a new vertex took
             // over from an old one count as new.
             if !used_before[v] || used[v] && !self.is_new[v] {
                 number[v] = origin.len() as u32;
                 origin.push(Some(VertexId(v as u32)));
+                ids.push(v as u32);
             }
         }
         for v in 0..used.len() {
             if used[v] && self.is_new[v] {
                 number[v] = origin.len() as u32;
                 origin.push(None);
+                ids.push(v as u32);
             }
         }
         let hexes: Vec<[u32; 8]> = self.hexes.iter().map(|h| h.map(|v| number[v as usize])).collect();
         let mesh = HexMesh::try_new(origin.len(), &hexes).expect("facets stay glued in pairs");
-        (mesh, origin)
+        (mesh, origin, ids)
     }
 }
 

@@ -1,0 +1,48 @@
+//! Smaller fillings by exchanging balls: what the atlas knows of small balls makes its own large fillings smaller.
+//!
+//! A filling with too many hexes is [simplified](crate::simplify()), its balls looked up in all that is known, larger cavities and steps included, and
+//! [shelled anew](crate::narrow_shelling) if that brought fewer. A class without a filling starts from one found by [inward flips](crate::fill_from_atlas),
+//! however large. Fillings made smaller join what is known, so the next round meets them.
+
+use crate::atlas::Atlas;
+use crate::cavity::Cavity;
+use crate::flip::Flip;
+use crate::grow::{ClassHash, MAX_CAP};
+use crate::inward::{FillOptions, fill_from_atlas};
+use crate::known::Known;
+use crate::narrow_shelling::narrow_shelling;
+use crate::simplify::{Collapse, SimplifyOptions, simplify};
+use hexfill_mesh::{Context, HexMesh};
+
+/// Cavities looked at for a first filling.
+const CAVITIES: u64 = 300_000;
+
+/// The flips of a filling of `sphere`, whose class is `class`, with less than `limit` hexes, if `balls` tried balls lead to one.
+pub(crate) fn smaller_filling(
+    sphere: &Cavity,
+    class: ClassHash,
+    limit: u32,
+    known: &Known,
+    atlas: &Atlas,
+    balls: u64,
+    ctx: &Context<'_>,
+) -> Option<Vec<Flip>> {
+    // Each class takes a sequence of its own, and another one each round.
+    let ctx = Context { progress: None, seed: ctx.seed ^ class as u64 ^ balls, ..*ctx };
+    let mesh = match known.smallest(class) {
+        Some(ball) => HexMesh::try_new(ball.n_vertices as usize, &ball.hexes).ok()?,
+        None => any_filling(sphere, atlas, &ctx)?,
+    };
+    let options = SimplifyOptions::default().with_max_quads(MAX_CAP);
+    let made = simplify(&mesh, atlas, &options.with_balls(balls).with_collapse(Collapse::Nothing), &ctx);
+    if made.report.after >= limit as usize {
+        return None;
+    }
+    narrow_shelling(&made.mesh)
+}
+
+fn any_filling(sphere: &Cavity, atlas: &Atlas, ctx: &Context<'_>) -> Option<HexMesh> {
+    let options = FillOptions::default().with_max_cavities(CAVITIES);
+    let outcome = fill_from_atlas(&sphere.to_surface(), atlas, &options, ctx)?;
+    outcome.fillings.into_iter().next().map(|filling| filling.mesh)
+}
