@@ -35,7 +35,7 @@ impl Default for LayOptions {
 /// On surfaces of fewer quads more meshes are begun, about as many more as it is smaller.
 const SMALL: u64 = 150;
 /// Meshes from which sheets are taken.
-const KEPT: usize = 2;
+const KEPT: usize = 6;
 /// On surfaces of more quads only the one with fewest invalid hexes, then fewest hexes is given, as embedding another takes too long.
 const LARGE: usize = 500;
 /// Plans for one mesh: a jam that pillows do not clear asks for another.

@@ -100,6 +100,7 @@ pub(crate) fn fill_best(
         budget,
         result,
         best: None,
+        is_polished: false,
         seen: Vec::new(),
         tangled: None,
         hopeless: None,
@@ -128,6 +129,8 @@ struct Trial<'a> {
     /// What the engines say; their meshes stay here until they are considered.
     result: FillResult,
     best: Option<(Rank, Filled, Placed)>,
+    /// Whether the best was raised as far as it is worth.
+    is_polished: bool,
     /// The meshes considered.
     seen: Vec<Candidate>,
     /// The shelled mesh nearest to valid positions, while none has any: bad corners first, then hexes.
@@ -275,6 +278,11 @@ impl<'a> Trial<'a> {
             let makers = laid.steps.iter().map(|&step| Maker::of_laying(step)).collect();
             let filled = Filled { start: Some(laid.points), makers, ..Filled::by(Route::Laying, laid.mesh) };
             self.consider_from(filled, false)?;
+            // What was screened says little of what it may become, and the next have more hexes.
+            self.polish();
+            if self.class() == Some(0) {
+                break;
+            }
         }
         Ok(())
     }
@@ -439,6 +447,7 @@ impl<'a> Trial<'a> {
         self.seen.push(Candidate::new(&filled, outcome));
         if self.best.as_ref().is_none_or(|(r, ..)| rank < *r) {
             self.best = Some((rank, filled, placed));
+            self.is_polished = false;
         }
         Ok(())
     }
@@ -489,7 +498,8 @@ impl<'a> Trial<'a> {
     /// Raises the best mesh further, if it was only screened.
     fn polish(&mut self) {
         let limited = self.limited();
-        let Some((_, filled, placed)) = self.best.as_mut().filter(|_| self.budget.programs > 0) else { return };
+        let is_worth = self.budget.programs > 0 && !std::mem::replace(&mut self.is_polished, true);
+        let Some((standing, filled, placed)) = self.best.as_mut().filter(|_| is_worth) else { return };
         let open = placed.embedding.as_ref().is_some_and(|e| placed.worst() < RELATIVE * e.target);
         if !matches!(filled.route, Route::Shelling | Route::Laying)
             || !placed.is_certified()
@@ -506,6 +516,7 @@ impl<'a> Trial<'a> {
         let polished = place_as_it_is(&from, self.boundary, Some(&more), &limited);
         // What was screened is certified already; the raise must not lose that.
         if polished.is_certified() && polished.worst() > placed.worst() {
+            *standing = rank(filled, &polished, self.options.prefer);
             *placed = polished;
         }
     }
