@@ -51,6 +51,15 @@ tests/python.sh
 step "the README's main command"
 python3 tests/readme.py
 
+step "files as people have them"
+# With the packages that the tests of the readers installed.
+python=${CARGO_TARGET_DIR:-target}/tmp/foreign-venv/bin/python
+if [ -x "$python" ]; then
+    "$python" tests/ordinary_files.py "${CARGO_TARGET_DIR:-target}/debug/hexfill" --out target/ordinary-files
+else
+    skipped "meshio and Gmsh are not installed"
+fi
+
 step "hostile surfaces"
 # The program as the tests built it: alone it would be built again, with the features of its own dependencies.
 python3 tests/hostile.py "${CARGO_TARGET_DIR:-target}/debug/hexfill" --quick --count 44 --out target/hostile

@@ -2,7 +2,7 @@
 """Makes hostile surfaces and runs `hexfill fill`, `check` and `doctor` over each; prints a markdown table by family.
 
     tests/hostile.py HEXFILL [--count N] [--first I] [--seed S] [--only FAMILY] [--jobs N] [--limit SECONDS] [--quick]
-                     [--out FOLDER] [--json FILE] [--make-only]
+                     [--out FOLDER] [--json FILE] [--make-only] [-- FLAGS OF FILL]
 
 Surface I of seed S is always the same: a shape (FAMILIES) of 6 to some 150 quads, and in most families what was done to
 its points (DEFORMATIONS, SCALES). `--quick` is the part that ./test.sh runs: small surfaces only. Outcomes:
@@ -483,8 +483,8 @@ def arguments():
     parser.add_argument("--keep", action="store_true", help="keep all surfaces")
     parser.add_argument("--make-only", action="store_true", help="write the surfaces and run nothing")
     parser.add_argument("--json", type=pathlib.Path, metavar="FILE", help="also write all rows as JSON")
-    parser.add_argument("more", nargs="*", help="more flags of fill, after --")
-    return parser.parse_args()
+    cut = sys.argv.index("--") if "--" in sys.argv else len(sys.argv)
+    return parser.parse_args(sys.argv[1:cut], argparse.Namespace(more=sys.argv[cut + 1:]))
 
 
 def main():

@@ -23,9 +23,16 @@ TAGS = ["tag", "tags", "gmsh:physical", "medit:ref", "CellEntityIds", "MaterialI
 JUDGED = {"certified_positive", "scaled_jacobian"}
 #: What a tag is on, by dimension.
 DIMENSIONS = {0: "points", 2: "quads", 3: "hexes"}
+ONE = {"points": "point", "quads": "quad", "hexes": "hex"}
 
 
-def taken(point_data: Any, cell_data: Mapping[str, Callable[[str], Any]], field_data: Any) -> dict[str, Any]:
+#: Of a kind (``"points"``, ``"quads"``, ``"hexes"``), by the name of a set: whether each is in it.
+Sets = Mapping[str, Mapping[str, "NDArray[np.bool_]"]]
+
+
+def taken(
+    point_data: Any, cell_data: Mapping[str, Callable[[str], Any]], field_data: Any, sets: Sets | None = None
+) -> dict[str, Any]:
     """``point_tags``, ``quad_data``, ``tag_names`` and the rest, for :func:`mesh._data`.
 
     ``cell_data`` gives, by the name of an array, a function from ``"quads"`` or ``"hexes"`` to its rows.
@@ -35,11 +42,35 @@ def taken(point_data: Any, cell_data: Mapping[str, Callable[[str], Any]], field_
     for kind in ("quads", "hexes"):
         rows = {name: np.asarray(of(kind)) for name, of in cell_data.items()}
         tags, data = _split({name: array for name, array in rows.items() if len(array)})
-        one = "quad" if kind == "quads" else "hex"
         # An array on hexes alone is NaN on quads, and the other way round.
         kept = {name: numbers for name, numbers in data.items() if name not in JUDGED and not np.isnan(numbers).all()}
-        found[f"{one}_tags"], found[f"{one}_data"] = tags, kept
+        found[f"{ONE[kind]}_tags"], found[f"{ONE[kind]}_data"] = tags, kept
+    for kind, masks in (sets or {}).items():
+        key = f"{ONE[kind]}_tags"
+        found[key], found["tag_names"] = _with_sets(found[key], found["tag_names"], kind, masks)
     return found
+
+
+def _with_sets(
+    tags: NDArray[np.int64] | None, names: list[tuple[str, int, str]], kind: str, masks: Mapping[str, NDArray[np.bool_]]
+) -> tuple[NDArray[np.int64] | None, list[tuple[str, int, str]]]:
+    """Tags and names with sets, which may overlap: a new tag for every combination of a tag and sets that occurs. A set that is what
+    a name of tags says already adds nothing."""
+    n = len(next(iter(masks.values()), []))
+    old = np.zeros(n, np.int64) if tags is None else tags
+    named = {name: np.isin(old, [tag for of, tag, other in names if (of, other) == (kind, name)]) for name in masks}
+    new = {name: mask for name, mask in masks.items() if mask.any() and not (mask == named[name]).all()}
+    if not new:
+        return tags, names
+    rows, which = np.unique(np.column_stack([old, *new.values()]), axis=0, return_inverse=True)
+    is_in = rows[:, 1:].astype(bool)
+    numbers = np.where(is_in.any(axis=1), np.cumsum(is_in.any(axis=1)) + max(old.max(), 0), rows[:, 0])
+    kept = [(of, tag, name) for of, tag, name in names if of != kind or tag in numbers]
+    for number, (before, *_), row in zip(numbers.tolist(), rows.tolist(), is_in):
+        if row.any():
+            inherited = [name for of, tag, name in names if (of, tag) == (kind, before)]
+            kept += [(kind, number, name) for name in dict.fromkeys([*inherited, *(name for name, i in zip(new, row) if i)])]
+    return numbers[which.reshape(-1)], kept
 
 
 def _split(arrays: Mapping[str, NDArray[Any]]) -> tuple[NDArray[np.int64] | None, dict[str, NDArray[np.float64]]]:
@@ -116,6 +147,15 @@ def names(mesh: Surface | HexMesh, kinds: Iterable[str]) -> dict[str, NDArray[np
         if kind in dimension:
             rows.setdefault(name, []).append([tag, dimension[kind]])
     return {name: np.array(pairs[0] if len(pairs) == 1 else pairs) for name, pairs in rows.items()}
+
+
+def sets(mesh: Surface | HexMesh, kind: str, tags: NDArray[np.int64] | None) -> dict[str, NDArray[np.int64]]:
+    """The points, quads or hexes of every name of a tag on them."""
+    found: dict[str, list[int]] = {}
+    for of, tag, name in mesh.tag_names if tags is not None else []:
+        if of == kind:
+            found.setdefault(name, []).append(tag)
+    return {name: np.flatnonzero(np.isin(tags, numbers)) for name, numbers in found.items()}  # type: ignore[arg-type]
 
 
 def point_data(mesh: Surface | HexMesh) -> dict[str, Any]:

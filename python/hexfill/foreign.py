@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -84,7 +85,26 @@ def _carried(grid: Any) -> dict[str, Any]:
         return np.concatenate(parts) if parts else np.empty(0)
 
     cell_data = {name: partial(rows, grid.cell_data[name]) for name in grid.cell_data.keys()}
-    return fields.taken(grid.point_data, cell_data, grid.field_data)
+    return fields.taken(grid.point_data, cell_data, grid.field_data, _sets(grid, rows))
+
+
+#: Sets of meshio that are no groups.
+NO_GROUPS = {"gmsh:bounding_entities"}
+
+
+def _sets(grid: Any, rows: Callable[[Any, str], Any]) -> fields.Sets:
+    """Sets of a meshio mesh: indices in each block of cells, and of points. PyVista has none."""
+
+    def mask(n: int, indices: Any) -> Any:
+        found = np.zeros(n, bool)
+        found[np.asarray([] if indices is None else indices, int)] = True
+        return found
+
+    of_cells = {name: of for name, of in getattr(grid, "cell_sets", {}).items() if name not in NO_GROUPS}
+    masks = {name: [mask(len(block.data), i) for block, i in zip(grid.cells, of)] for name, of in of_cells.items()}
+    found: dict[str, Any] = {kind: {name: rows(of, kind) for name, of in masks.items()} for kind in KINDS}
+    found["points"] = {name: mask(len(grid.points), i) for name, i in getattr(grid, "point_sets", {}).items()}
+    return found
 
 
 def _poly_data(surface: Any) -> dict[str, Any]:
@@ -168,8 +188,8 @@ def mesh_to_pyvista(mesh: HexMesh) -> pyvista.UnstructuredGrid:
     return grid
 
 
-def surface_to_meshio(surface: Surface) -> meshio.Mesh:
-    """A block of quads with their tags and data."""
+def surface_to_meshio(surface: Surface, sets: bool) -> meshio.Mesh:
+    """A block of quads with their tags and data; groups by name as sets, if asked for."""
     import meshio
 
     cell_data = {name: [numbers] for name, numbers in fields.joined(surface.quad_data).items()}
@@ -181,10 +201,22 @@ def surface_to_meshio(surface: Surface) -> meshio.Mesh:
         point_data=fields.point_data(surface),
         cell_data=cell_data,
         field_data=fields.names(surface, ["points", "quads"]),
+        **(_as_sets(surface, [("quads", surface.quad_tags)]) if sets else {}),
     )
 
 
-def mesh_to_meshio(mesh: HexMesh) -> meshio.Mesh:
+def _as_sets(mesh: Surface | HexMesh, blocks: list[tuple[str, Any]]) -> dict[str, Any]:
+    """The groups of points and of blocks of cells, by name: indices in each block."""
+    of_blocks = [fields.sets(mesh, kind, tags) for kind, tags in blocks]
+    names = dict.fromkeys(name for of in of_blocks for name in of)
+    none = np.empty(0, np.int64)
+    return {
+        "cell_sets": {name: [of.get(name, none) for of in of_blocks] for name in names},
+        "point_sets": fields.sets(mesh, "points", mesh.point_tags),
+    }
+
+
+def mesh_to_meshio(mesh: HexMesh, sets: bool) -> meshio.Mesh:
     """A block of hexahedra with their data, and the block of the surface's quads with theirs. Every array is on both: quads have no quality (NaN)."""
     import meshio
 
@@ -199,6 +231,7 @@ def mesh_to_meshio(mesh: HexMesh) -> meshio.Mesh:
         point_data=fields.point_data(mesh),
         cell_data=cell_data,
         field_data=fields.names(mesh, ["points", "quads", "hexes"]),
+        **(_as_sets(mesh, [("hexes", mesh.hex_tags), ("quads", mesh.quad_tags)]) if sets else {}),
     )
 
 

@@ -174,9 +174,10 @@ class Surface(_Arrays):
         """As a PyVista mesh with its tags, data, and names of tags as field data."""
         return foreign.surface_to_pyvista(self)
 
-    def to_meshio(self) -> meshio.Mesh:
-        """As a meshio mesh with its tags, data, and names of tags as field data."""
-        return foreign.surface_to_meshio(self)
+    def to_meshio(self, *, sets: bool = False) -> meshio.Mesh:
+        """As a meshio mesh with its tags, data, and names of tags as field data. ``sets``: the groups by name as ``cell_sets`` and
+        ``point_sets``, too."""
+        return foreign.surface_to_meshio(self, sets)
 
     def __repr__(self) -> str:
         n = "no coordinates" if self.points is None else f"{len(self.points)} points"
@@ -316,9 +317,13 @@ class HexMesh(_Arrays):
         ``surface.to_pyvista()``."""
         return foreign.mesh_to_pyvista(self)
 
-    def to_meshio(self) -> meshio.Mesh:
-        """As a meshio mesh: the hexahedra, then the quads of the surface, with data, tags, and names of tags as field data."""
-        return foreign.mesh_to_meshio(self)
+    def to_meshio(self, *, sets: bool = False) -> meshio.Mesh:
+        """As a meshio mesh: the hexahedra, then the quads of the surface, with data, tags, and names of tags as field data.
+
+        ``sets``: the groups by name as ``cell_sets`` and ``point_sets``, too. Not asked for, there are none: to formats without sets meshio
+        writes these as one array in which a later set covers an earlier one.
+        """
+        return foreign.mesh_to_meshio(self, sets)
 
     def to_html(self, title: str | None = None) -> str:
         """The viewer's page: one HTML file (UTF-8) that needs no network; about 0.7 MB and 45 to 100 bytes a hex."""

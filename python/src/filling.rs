@@ -215,9 +215,8 @@ pub(crate) fn embed(
 ) -> PyResult<Made> {
     let objectives =
         [("sj", Objective::ScaledJacobian), ("balanced", Objective::Balanced), ("untangle", Objective::UntangleOnly)];
-    let mut options =
-        EmbedOptions::new(choice("objective", objective, &objectives).map_err(|failure| failure.raise(py))?);
-    (options.starts, options.symmetric) = (starts, symmetric);
+    let objective = choice("objective", objective, &objectives).map_err(|failure| failure.raise(py))?;
+    let options = EmbedOptions::new(objective).with_starts(starts).with_symmetric(symmetric);
     let data = Arc::clone(&mesh.0);
     let ((data, report), interrupted) = run(py, how, move |ctx| embedded(&data, fresh, &options, ctx))?;
     Ok((data.into(), report, interrupted))

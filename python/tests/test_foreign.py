@@ -148,6 +148,41 @@ def test_meshio_carries_data_tags_and_names(bar, tmp_path):
     assert set(both.cell_data) == {"v", "v:0", "v:1", "v:2"}
 
 
+def test_sets_of_meshio_come_in_and_go_out(bar):
+    meshio = pytest.importorskip("meshio")
+    points, quads = bar
+    m = len(quads)
+    given = meshio.Mesh(
+        points,
+        [("quad", quads[:10]), ("line", [[0, 1]]), ("quad", quads[10:])],
+        cell_data={"gmsh:physical": [np.full(10, 4), np.array([9]), np.full(m - 10, 5)]},
+        field_data={"inlet": np.array([4, 2]), "wall": np.array([5, 2])},
+        cell_sets={
+            "inlet": [np.arange(10), None, []],  # as the name of tag 4 says
+            "warm": [[0, 9], [0], [0, 1]],
+            "hot": [[9], [], [1]],
+            "gmsh:bounding_entities": [np.array([1, -2]), np.array([]), np.array([3])],
+        },
+        point_sets={"corners": [0, 3], "one": [3]},
+    )
+    mesh = hexfill.fill(given)
+    due = {"inlet": range(10), "wall": range(10, m), "warm": [0, 9, 10, 11], "hot": [9, 11]}
+    for _ in range(2):
+        for name, members in due.items():
+            tags = [tag for kind, tag, other in mesh.tag_names if (kind, other) == ("quads", name)]
+            assert np.flatnonzero(np.isin(mesh.quad_tags, tags)).tolist() == list(members), name
+        assert "gmsh:bounding_entities" not in {name for _, _, name in mesh.tag_names}
+        assert mesh.to_meshio().cell_sets == {} and mesh.to_meshio().point_sets == {}
+        out = mesh.to_meshio(sets=True)
+        assert {name: of[1].tolist() for name, of in out.cell_sets.items() if len(of[1])} == {n: list(i) for n, i in due.items()}
+        assert out.cell_sets["volume"][0].tolist() == list(range(12))
+        assert {name: i.tolist() for name, i in out.point_sets.items()} == {"corners": [0, 3], "one": [3]}
+        # What comes back says nothing new.
+        mesh = hexfill.embed(out)
+    surface = hexfill.Surface(points, quads, quad_tags=np.arange(m) % 2, tag_names=[("quads", 1, "odd")]).to_meshio(sets=True)
+    assert surface.cell_sets["odd"][0].tolist() == list(range(1, m, 2)) and surface.point_sets == {}
+
+
 def test_quadratic_cells_are_written(bar, tmp_path):
     pyvista = pytest.importorskip("pyvista")
     mesh = hexfill.fill(bar[0], bar[1])

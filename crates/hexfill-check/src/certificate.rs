@@ -2,6 +2,8 @@
 //!
 //! The hash covers the stored numbers: positions as bits, hexes and surface quads as indices, in the order given. So the
 //! certificate is for the numbers whatever the file format, and for no others.
+//!
+//! Source: ours.
 
 use crate::input::{Judged, Options};
 use crate::judge::judge;
@@ -244,6 +246,8 @@ pub fn verify_certificate(json: &str, input: &Judged<'_>, ctx: &Context<'_>) -> 
     if given.format != FORMAT {
         return Err(CertificateError::Format { given: given.format });
     }
+    // Text first, then what it is about, then the numbers: the first thing that is wrong is the one that is named.
+    // The seal is a checksum and no signature: who changes the text can seal it again, and is found by the numbers.
     if given.seal != given.expected_seal() {
         return Err(CertificateError::Altered);
     }

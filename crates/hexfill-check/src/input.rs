@@ -1,4 +1,6 @@
 //! What the judge is given: raw arrays, so that bad meshes can be judged too.
+//!
+//! Source: ours.
 
 use crate::rule::{Level, Rules};
 

@@ -1,4 +1,6 @@
 //! [`judge`]: every level in turn, and the report.
+//!
+//! Source: ours: the rules are those of the book's page `definitions`, "The validity ladder".
 
 use crate::geometry::overlap::overlap;
 use crate::geometry::positions::{judge_jacobians, judge_positions};
@@ -49,6 +51,8 @@ pub fn judge(input: &Judged<'_>, options: &Options, ctx: &Context<'_>) -> Report
     run.facts.hexes = input.hexes.len() as u64;
     run.facts.vertices = input.n_vertices as u64;
     let why = run.levels();
+    // What was seen by the way above the level asked for is not reported: whoever asks for less gets the same report
+    // whatever lies above.
     run.findings.forget_above(options.up_to);
     let levels = Level::ALL
         .into_iter()
@@ -98,6 +102,8 @@ impl Run<'_> {
         let (found, used) = judge_shape(self.input);
         self.findings.append(found);
         self.done = 1;
+        // Only here it ends early: with an index out of range nothing above can even be asked. All other levels are
+        // judged whatever failed before.
         if self.findings.breaks_level(Level::L1) {
             return Some("level 1 failed".into());
         }
@@ -151,6 +157,7 @@ impl Run<'_> {
             });
             parts.into_iter().for_each(|part| self.findings.append(part));
         }
+        // From here on det J is judged; quality and overlap are extras that a stop may cut off.
         self.done = 5;
         let bad = |rule| self.findings.count(rule);
         geometry.not_positive = bad(Rule::HexInsideOut) + bad(Rule::JacobianNotPositive);
@@ -262,6 +269,7 @@ impl Run<'_> {
         let n = self.input.hexes.len();
         let mut open = vec![false; n];
         for quad in boundary {
+            // A part without a boundary quad is closed, a 3-manifold of its own.
             open[forest.find(quad.hex).0 as usize] = true;
         }
         let roots: Vec<u32> = (0..n as u32).filter(|&h| forest.find(h).0 == h).collect();
@@ -303,6 +311,8 @@ impl Run<'_> {
         let links = [Rule::EdgePinched, Rule::VertexPinched, Rule::VertexLinkNotDisk, Rule::VertexLinkNotSphere];
         let manifold = links.iter().all(|&rule| self.findings.count(rule) == 0);
         let sphere = self.facts.boundary.as_ref().is_some_and(|b| b.len() == 1 && b[0].genus == Some(0));
+        // Collapsed to a point, a manifold is a ball (Whitehead 1939). With the numbers of a ball and no such
+        // collapse found it may be one; that is said as "homology".
         self.facts.ball = Some(if !manifold || !sphere || found.betti != [1, 0, 0, 0] {
             Ball::No
         } else if found.critical == [1, 0, 0, 0] {

@@ -1,5 +1,7 @@
 //! Numbered tasks on the current rayon pool, results in order. A few tasks are run where they are: waking threads costs more
 //! than judging a small mesh, and small meshes are judged by the million.
+//!
+//! Source: ours.
 
 use rayon::prelude::*;
 

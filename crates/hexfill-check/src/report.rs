@@ -208,12 +208,19 @@ pub struct Geometry {
     pub overlap: Option<Overlap>,
 }
 
+/// "1 hex", "2 hexes".
+fn hexes(n: u64) -> String {
+    format!("{n} hex{}", if n == 1 { "" } else { "es" })
+}
+
 impl fmt::Display for Geometry {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
             f,
-            "det J > 0 certified in {} hexes, not positive in {}, undecided in {}",
-            self.certified, self.not_positive, self.undecided
+            "det J > 0 certified in {}, not positive in {}, undecided in {}",
+            hexes(self.certified),
+            self.not_positive,
+            self.undecided
         )?;
         if let Some(o) = &self.overlap {
             let verdict = if o.injective { "proved that the mesh does not overlap" } else { "overlap is not excluded" };
@@ -318,8 +325,8 @@ impl fmt::Display for Facts {
         let number = |n: Option<u64>| n.map_or("?".to_string(), |n| n.to_string());
         writeln!(
             f,
-            "{} hexes, {} vertices ({} interior, {} unused), {} edges, {} quads ({} boundary)",
-            self.hexes,
+            "{}, {} vertices ({} interior, {} unused), {} edges, {} quads ({} boundary)",
+            hexes(self.hexes),
             self.vertices,
             number(self.interior_vertices),
             self.unused_vertices,

@@ -1,4 +1,6 @@
 //! The validity ladder and the rules on its rungs, with the names that code, command line and JSON share.
+//!
+//! Source: ours (book, page `definitions`, "The validity ladder"), and Weill for the rules `weill-*`.
 
 use serde::{Serialize, Serializer};
 use std::fmt;

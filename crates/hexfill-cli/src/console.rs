@@ -1,6 +1,7 @@
 //! What goes to the terminal: messages, errors, progress. A bar on a terminal, a plain line every few seconds otherwise.
 
 use crate::Common;
+use crate::exit::Exit;
 use hexfill::Progress;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, Write};
@@ -53,6 +54,29 @@ impl ProgressState {
         let left = since.as_secs_f64() * (total - p.done) as f64 / made as f64;
         Some(format!("{share}, about {} left of it", duration(left)))
     }
+}
+
+/// An object as JSON, the version of its keys first.
+fn versioned(value: &impl serde::Serialize) -> anyhow::Result<String> {
+    let mut value = serde_json::to_value(value)?;
+    let object = value.as_object_mut().expect("a report is an object");
+    object.shift_insert(0, "json_version".to_owned(), JSON_VERSION.into());
+    Ok(serde_json::to_string_pretty(&value)?)
+}
+
+/// The JSON of flags that could not be understood, where `--json` is among them: the first line of what was said.
+pub(crate) fn print_usage_error(said: &str) {
+    let first = said.lines().next().unwrap_or_default();
+    let error = first.strip_prefix("error: ").unwrap_or(first);
+    if let Ok(text) = versioned(&serde_json::json!({ "error": error, "exit_code": Exit::Usage as u8 })) {
+        // Nothing is left to be done if stdout fails as well.
+        let _ = writeln!(std::io::stdout(), "{text}");
+    }
+}
+
+/// "1 hex", "2 hexes".
+pub(crate) fn hexes(n: usize) -> String {
+    format!("{n} hex{}", if n == 1 { "" } else { "es" })
 }
 
 /// "12 s", "3 min", "2 h".
@@ -128,16 +152,12 @@ impl Console {
         Ok(())
     }
 
-    /// Prints a value as JSON on stdout; an object begins with the version of its keys.
+    /// Prints an object as JSON on stdout, the version of its keys first.
     ///
     /// # Errors
     /// If stdout cannot be written.
     pub(crate) fn print_json(&self, value: &impl serde::Serialize) -> anyhow::Result<()> {
-        let mut value = serde_json::to_value(value)?;
-        if let Some(object) = value.as_object_mut() {
-            object.shift_insert(0, "json_version".to_owned(), JSON_VERSION.into());
-        }
-        self.print(serde_json::to_string_pretty(&value)?)
+        self.print(versioned(value)?)
     }
 
     /// Shows progress of long work.
@@ -204,4 +224,20 @@ fn bar_style(with_total: bool) -> ProgressStyle {
         "{elapsed:>6} {spinner} {pos} {wide_msg}"
     };
     ProgressStyle::with_template(template).expect("the template is well formed")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn progress_tells_the_share_and_the_time_left_where_the_end_is_known() {
+        let began = Instant::now().checked_sub(Duration::from_secs(10)).unwrap();
+        let mut state =
+            ProgressState { bar: None, on_terminal: false, last_line: began, started: began, step: ("work", began, 0) };
+        let mut at = |done, total| state.share(&Progress { stage: "work", done, total, message: String::new() });
+        assert_eq!(at(25, Some(100)).unwrap(), "25 %, about 30 s left of it");
+        assert_eq!(at(100, Some(100)).unwrap(), "100 %");
+        assert_eq!(at(100, None), None);
+    }
 }

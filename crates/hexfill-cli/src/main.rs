@@ -18,8 +18,8 @@ use std::time::Duration;
 
 /// Fill a closed quad surface with hexahedra and leave the surface exactly as it is.
 ///
-/// A surface is a file (OBJ, OFF, PLY, VTK, VTU, MEDIT, MSH, INP, OVM, JSON, each also .gz or .zst), `-` for stdin (with
-/// --from), a catalogue name such as :schneiders-pyramid, or a signature printed by `hexfill info`.
+/// A surface is a file (OBJ, OFF, PLY, VTK, VTU, VTP, MEDIT, MSH, INP, BDF, UNV, OVM, JSON, each also .gz or .zst), `-` for stdin
+/// (with --from), a catalogue name such as :schneiders-pyramid, or a signature printed by `hexfill info`.
 ///
 /// Exit codes: 0 done and verified, 1 the answer is "no", 2 bad usage or input, 3 stopped by a limit or signal before
 /// the work was done (best result and checkpoint written), 70 internal error.
@@ -111,6 +111,9 @@ fn run() -> ExitCode {
             let code = if error.use_stderr() { Exit::Usage } else { Exit::Done };
             // A closed pipe while printing help is no failure.
             let _ = error.print();
+            if error.use_stderr() && std::env::args_os().any(|arg| arg == "--json") {
+                console::print_usage_error(&error.to_string());
+            }
             return code.into();
         }
     };
@@ -118,7 +121,7 @@ fn run() -> ExitCode {
     let cancel = exit::install_signal_handler();
     if let Some(threads) = cli.common.threads {
         if threads == 0 {
-            console.error(&anyhow::anyhow!("--threads 0: give at least 1"));
+            console.fail(&anyhow::anyhow!("--threads 0: give at least 1"), Exit::Usage as u8);
             return Exit::Usage.into();
         }
         // Results do not depend on it, and threads that wait for a core only stand in each other's way.
@@ -129,7 +132,7 @@ fn run() -> ExitCode {
         let threads = threads.min(most);
         // More threads than the system gives is the user's number, no defect.
         if let Err(error) = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global() {
-            console.error(&anyhow::anyhow!("--threads {threads}: {error}"));
+            console.fail(&anyhow::anyhow!("--threads {threads}: {error}"), Exit::Usage as u8);
             return Exit::Usage.into();
         }
     }
@@ -154,7 +157,7 @@ fn run() -> ExitCode {
         Command::Simplify(args) => commands::simplify::run(args, &console, &ctx),
         Command::Convert(args) => commands::convert::run(args, &console),
         Command::View(args) => commands::view::run(args, &console),
-        Command::Catalog(args) => commands::catalog::run(args, &console),
+        Command::Catalog(args) => commands::catalog::run(args, &console, &ctx),
         Command::Atlas(args) => commands::atlas::run(args, &console, &ctx),
         Command::Enumerate(args) => commands::enumerate::run(args, rayon::current_num_threads(), &console, &ctx),
         Command::Search(args) => commands::search::run(args, rayon::current_num_threads(), &console, &ctx),

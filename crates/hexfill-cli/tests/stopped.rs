@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 /// Fills that take many seconds: a small sphere the atlas holds, spikes it does not hold, and a file of the corpus.
 fn slow_surfaces(dir: &Path) -> Vec<String> {
     std::fs::write(dir.join("spikes.obj"), spikes(5)).unwrap();
-    vec![":buffer-cube-20".to_owned(), "spikes.obj".to_owned()]
+    vec![":buffer-cube-20".to_owned(), "spikes.obj".to_owned(), corpus("radial_12.obj")]
 }
 
 /// The surface of a cube of n^3 cells with its vertices at wild distances from the centre, as OBJ.

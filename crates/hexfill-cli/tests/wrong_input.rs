@@ -150,6 +150,13 @@ fn errors_are_json_where_json_was_asked_for_and_say_a_thing_once() {
     assert!(err.contains(message));
     let half = &message[message.len() / 2..];
     assert_eq!(message.matches(half).count(), 1, "{message}");
+    // Flags that mean nothing, too.
+    for args in [&["fill", ":cube", "--bad", "--json"][..], &["info", ":cube", "-j", "0", "--json"]] {
+        let (code, out, err) = hexfill(dir.path(), args);
+        let value: serde_json::Value = serde_json::from_str(&out).unwrap_or_else(|e| panic!("{args:?}: {e}: {out}"));
+        assert_eq!((code, &value["exit_code"], &value["json_version"]), (2, &2.into(), &1.into()), "{args:?}");
+        assert!(err.contains(value["error"].as_str().unwrap()), "{err}");
+    }
 }
 
 #[test]

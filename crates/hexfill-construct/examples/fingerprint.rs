@@ -57,12 +57,8 @@ fn given(surface: &QuadSurface, points: &[[f64; 3]]) -> Option<GivenTets> {
 
 fn all_ways(name: &str, surface: &QuadSurface, points: Option<&[[f64; 3]]>) {
     println!("{name} existence {:?}", existence(surface, points));
-    let of = |cells, route, ball_core, variant| ConstructOptions {
-        cells,
-        route,
-        ball_core,
-        variant,
-        ..ConstructOptions::default()
+    let of = |cells, route, ball_core, variant| {
+        ConstructOptions::default().with_cells(cells).with_route(route).with_ball_core(ball_core).with_variant(variant)
     };
     let (auto, black) = (RouteChoice::Auto, RouteChoice::Erickson);
     let (fewest, embeddable) = (CellChoice::Fewest, CellChoice::Embeddable);
@@ -77,7 +73,7 @@ fn all_ways(name: &str, surface: &QuadSurface, points: Option<&[[f64; 3]]>) {
     line(name, "embeddable-cone", surface, points, &of(embeddable, auto, BallCore::Centred, 0));
     line(name, "erickson", surface, points, &of(embeddable, black, BallCore::Auto, 0));
     if let Some(tets) = given(surface, p) {
-        let given = ConstructOptions { tets: Some(Arc::new(tets)), ..of(embeddable, auto, BallCore::Auto, 0) };
+        let given = of(embeddable, auto, BallCore::Auto, 0).with_tets(Arc::new(tets));
         line(name, "given", surface, points, &given);
     }
 }

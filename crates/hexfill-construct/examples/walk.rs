@@ -41,7 +41,7 @@ fn main() {
         (RouteChoice::Auto, BallCore::Fewest),
         (RouteChoice::Erickson, BallCore::Centred),
     ] {
-        let options = ConstructOptions { route, ball_core: core, ..ConstructOptions::default() };
+        let options = ConstructOptions::default().with_route(route).with_ball_core(core);
         match construct(&surface, None, &options, &ctx) {
             Ok(made) => println!("{core:?}: {}", made.report),
             Err(e) => println!("{e}"),

@@ -1,4 +1,6 @@
 //! The construction from end to end: each step a function, in the order of the folders.
+//!
+//! Source: Erickson 2014, section 5; the order of the steps is that of the book's page `construction`.
 
 use crate::core::core;
 use crate::cut::cut;

@@ -1,6 +1,8 @@
 //! Why a surface is not filled.
 
 use crate::cells::pattern::Pattern;
+use crate::joins::no_chain::NoChain;
+use crate::misfit::TetMisfit;
 use crate::missing::MissingInterior;
 use crate::surface::existence::Existence;
 use hexfill_mesh::{HexMeshError, StopReason};
@@ -20,7 +22,7 @@ pub enum ConstructError {
         /// The components.
         components: [usize; 2],
         /// What went wrong.
-        reason: String,
+        reason: NoChain,
     },
     /// Tetrahedra of the interior are needed and not at hand.
     #[error("tetrahedra of the interior are needed (genus {genus}, {components} component(s)): {reason}")]
@@ -36,7 +38,7 @@ pub enum ConstructError {
     #[error("the tetrahedra do not have the boundary that was asked for: {reason}")]
     TetBoundary {
         /// What differs.
-        reason: String,
+        reason: TetMisfit,
     },
     /// The positions are not one a vertex.
     #[error("{given} positions given for {needed} vertices")]

@@ -1,5 +1,7 @@
 //! Ids of the core and of the mesh that is made. Vertices of the surface and of the core are [`VertexId`](hexfill_mesh::VertexId)s:
 //! the core's first ones are those of the surface.
+//!
+//! Source: ours.
 
 use hexfill_mesh::id_type;
 

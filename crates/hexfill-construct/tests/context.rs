@@ -37,12 +37,7 @@ fn cancelled_after_any_report() {
             };
             let ctx = Context { cancel: Some(&cancel), progress: Some(&progress), ..Context::default() };
             let before = Instant::now();
-            let made = construct(
-                &surface,
-                points.as_deref(),
-                &ConstructOptions { route, ..ConstructOptions::default() },
-                &ctx,
-            );
+            let made = construct(&surface, points.as_deref(), &ConstructOptions::default().with_route(route), &ctx);
             assert!(before.elapsed() < Duration::from_secs(20));
             (made, calls.load(Ordering::Relaxed))
         };
@@ -92,7 +87,7 @@ fn progress_names_the_stages_in_order() {
 #[test]
 fn the_same_bytes_alone_and_beside_others() {
     let bytes = |(surface, points, route): &Case| -> (Vec<[u32; 8]>, Vec<[u64; 3]>, String) {
-        let options = ConstructOptions { route: *route, ..ConstructOptions::default() };
+        let options = ConstructOptions::default().with_route(*route);
         let made = construct(surface, points.as_deref(), &options, &Context::default()).unwrap();
         let start = made.start.unwrap_or_default().iter().map(|p| p.map(f64::to_bits)).collect();
         (made.mesh.hexes().iter().map(|h| h.map(|v| v.0)).collect(), start, made.report.to_string())

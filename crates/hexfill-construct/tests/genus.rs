@@ -70,7 +70,7 @@ fn plates_with_holes() {
         println!("genus {genus}: {}", made.report);
         check(&surface, &made);
         // Erickson's colouring needs no bipartition and costs more.
-        let options = ConstructOptions { route: RouteChoice::Erickson, ..ConstructOptions::default() };
+        let options = ConstructOptions::default().with_route(RouteChoice::Erickson);
         let old = construct(&surface, Some(&points), &options, &Context::default()).unwrap();
         println!("genus {genus}: {}", old.report);
         check(&surface, &old);

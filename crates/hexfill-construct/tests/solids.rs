@@ -102,7 +102,7 @@ fn odd_components_of_one_solid_are_joined() {
         let found = existence(&surface, Some(&points));
         assert!(matches!(found, Existence::Exists { .. }), "{found:?}");
         for route in [RouteChoice::Auto, RouteChoice::Erickson] {
-            let options = ConstructOptions { route, ..ConstructOptions::default() };
+            let options = ConstructOptions::default().with_route(route);
             let made = construct(&surface, Some(&points), &options, &Context::default()).unwrap();
             println!("{n} x {m} round {inner} x {m}: {}", made.report);
             assert_eq!(made.report.n_joins, 1);

@@ -19,7 +19,7 @@ fn check(surface: &QuadSurface, made: &Construction) {
 }
 
 fn fill(surface: &QuadSurface, ball_core: BallCore) -> Construction {
-    let options = ConstructOptions { ball_core, ..ConstructOptions::default() };
+    let options = ConstructOptions::default().with_ball_core(ball_core);
     let made = construct(surface, None, &options, &Context::default()).unwrap();
     check(surface, &made);
     made
@@ -66,7 +66,7 @@ fn random_spheres() {
 
 /// Certified hexes, and the least certified scaled Jacobian, as constructed.
 fn quality(surface: &QuadSurface, points: &[[f64; 3]]) -> (Construction, usize, f64) {
-    let options = ConstructOptions { cells: CellChoice::Embeddable, ..ConstructOptions::default() };
+    let options = ConstructOptions::default().with_cells(CellChoice::Embeddable);
     let made = construct(surface, Some(points), &options, &Context::default()).unwrap();
     check(surface, &made);
     let hexes = made.mesh.hexes_raw();

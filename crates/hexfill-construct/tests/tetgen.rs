@@ -22,10 +22,7 @@ fn is_installed() -> bool {
 }
 
 fn fill(surface: &QuadSurface, points: &[[f64; 3]], program: &str) -> Result<Construction, ConstructError> {
-    let options = ConstructOptions {
-        tets: Some(Arc::new(TetgenTets { program: program.into() })),
-        ..ConstructOptions::default()
-    };
+    let options = ConstructOptions::default().with_tets(Arc::new(TetgenTets { program: program.into() }));
     construct(surface, Some(points), &options, &Context::default())
 }
 
@@ -177,10 +174,7 @@ printf '1 4 0\\n0 0 1 2 3\\n' > core.1.ele";
 fn a_program_that_hangs_is_cancelled() {
     let fake = Fake::new("hangs", "exec sleep 600");
     let (surface, points) = plate(1, 1, &[]);
-    let options = ConstructOptions {
-        tets: Some(Arc::new(TetgenTets { program: fake.0.clone() })),
-        ..ConstructOptions::default()
-    };
+    let options = ConstructOptions::default().with_tets(Arc::new(TetgenTets { program: fake.0.clone() }));
     let cancel = AtomicBool::new(false);
     let ctx = Context { cancel: Some(&cancel), ..Context::default() };
     let before = Instant::now();

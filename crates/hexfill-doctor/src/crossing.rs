@@ -4,6 +4,8 @@
 //! only if they do whichever way both are cut. Candidates come from a tree of boxes; every decision is made by exact predicates
 //! (Shewchuk 1997) on triangles, by what they share: no vertex (they may not touch), one (they may not meet elsewhere), two
 //! (they may not lie on each other).
+//!
+//! Source: Shewchuk 1997 (the predicates); what counts as crossing is ours.
 
 use crate::soup::Soup;
 use rayon::prelude::*;

@@ -1,4 +1,6 @@
 //! New points in the middles of edges and faces, as cuts of faces want them.
+//!
+//! Source: ours.
 
 use crate::soup::Soup;
 use std::collections::BTreeMap;

@@ -1,4 +1,6 @@
 //! Faces and points that are wrong by themselves, each in linear time or by one sort.
+//!
+//! Source: ours.
 
 use crate::soup::Soup;
 use hexfill_geometry::{Vector, cross, dot, norm, sub};

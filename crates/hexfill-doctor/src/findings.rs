@@ -1,4 +1,6 @@
 //! [`examine`]: everything about a surface at once, each finding with its remedy.
+//!
+//! Source: ours.
 
 use crate::crossing::crossings;
 use crate::faults::{
@@ -162,6 +164,8 @@ pub fn examine(soup: &Soup) -> Findings {
         ),
     ];
     all.findings.extend(by_themselves.into_iter().flatten());
+    // Findings so far need no surface and are all told; those that follow need one, and where there is none it is
+    // said what was not looked at.
     match soup.surface() {
         Ok(surface) => all.look_at_surface(soup, &surface),
         Err(error) => {
@@ -226,6 +230,7 @@ fn edges_and_vertices(soup: &Soup, error: &SurfaceError) -> Vec<Finding> {
     let with = |is_one: fn(usize) -> bool| -> Vec<Edge> {
         uses.iter().filter(|(_, n)| is_one(**n)).map(|(&[a, b], _)| Edge(VertexId(a), VertexId(b))).collect()
     };
+    // Ordered by ids through the map, so that the first ten are always the same ten.
     let (open, many) = (with(|n| n == 1), with(|n| n > 2));
     let mut found: Vec<Finding> = [
         Finding::of(

@@ -6,6 +6,26 @@
 //! rooms tell them (`hexfill-embed`, `hexfill-construct`), and the facade puts all together.
 //!
 //! Faces are numbered as in the file. Linear time but for sorting, the search for crossings (a tree of boxes) and the matching of triangles.
+//!
+//! Not for repair at any price: where a fault has several answers (a hole to be closed, faces that cross) it is named and left, and no point is ever moved.
+//! Not a judge of hex meshes either (`hexfill-check` is).
+//!
+//! Invariants: what is found comes in order of ids, the first ten and the count; findings do not depend on the order in which faults are looked for; whether
+//! faces cross is decided by exact predicates; [`mend`] keeps every face and point it does not have to touch, with its number told. Papers: Shewchuk 1997
+//! (predicates), Edmonds 1965 (triangles merged in pairs); the keys are those of the book's bibliography.
+//!
+//! ```
+//! use hexfill_doctor::{MendOptions, Severity, Soup, examine, mend};
+//!
+//! // A cube whose top was cut into two triangles.
+//! let mut faces: Vec<Vec<u32>> = [[0, 3, 2, 1], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]].map(Vec::from).into();
+//! faces.extend([vec![4, 5, 6], vec![4, 6, 7]]);
+//! let soup = Soup { points: Vec::new(), faces };
+//! assert!(examine(&soup).findings.iter().any(|f| f.severity == Severity::Fatal));
+//! let mended = mend(&soup, &MendOptions::default());
+//! assert_eq!(mended.soup.faces.len(), 6);
+//! assert!(examine(&mended.soup).findings.iter().all(|f| f.severity != Severity::Fatal));
+//! ```
 
 mod crossing;
 mod cut;

@@ -1,4 +1,6 @@
 //! [`mend`]: the faults that have one smallest remedy are mended; what stays is for the findings to say.
+//!
+//! Source: ours.
 
 use crate::cut::Cutter;
 use crate::faults::{degenerate_faces, repeated_faces};

@@ -1,4 +1,6 @@
 //! How far the corners of quads are from straight.
+//!
+//! Source: ours.
 
 use hexfill_geometry::{Vector, cross, dot, norm, sub};
 

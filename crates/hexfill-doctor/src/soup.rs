@@ -1,4 +1,6 @@
 //! [`Soup`]: points and faces as a file holds them, nothing being known of how they fit.
+//!
+//! Source: ours.
 
 use hexfill_mesh::{QuadSurface, SurfaceError};
 

@@ -1,4 +1,6 @@
 //! Triangles merged in pairs into quads: a matching of largest size (Edmonds 1965), and of those one whose worst quad is best.
+//!
+//! Source: Edmonds 1965; raising the worst quad by bisection of the threshold is ours.
 
 use crate::sines::least_sine;
 use crate::soup::Soup;

@@ -21,13 +21,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let input: Input = serde_json::from_str(&std::fs::read_to_string(&arguments[1])?)?;
     let n = input.hexes.iter().flatten().max().map_or(0, |&v| v as usize + 1).max(input.boundary_points.len());
     let mesh = HexMesh::try_new(n, &input.hexes)?;
-    let mut options = Options::new(match arguments.get(2).map(String::as_str) {
+    let options = Options::new(match arguments.get(2).map(String::as_str) {
         Some("untangle-only") => Objective::UntangleOnly,
         Some("balanced") => Objective::Balanced,
         _ => Objective::ScaledJacobian,
-    });
-    options.symmetric = std::env::var_os("HEXFILL_SYMMETRIC").is_some();
-    options.starts = arguments.get(3).map_or(Ok(0), |s| s.parse())?;
+    })
+    .with_symmetric(std::env::var_os("HEXFILL_SYMMETRIC").is_some())
+    .with_starts(arguments.get(3).map_or(Ok(0), |s| s.parse())?);
     let seed = arguments.get(4).map_or(Ok(0), |s| s.parse())?;
     let progress = |p: &hexfill_mesh::Progress| eprintln!("{} {} {}", p.stage, p.done, p.message);
     let verbose = std::env::var_os("HEXFILL_VERBOSE").is_some();

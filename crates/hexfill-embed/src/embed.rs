@@ -1,8 +1,10 @@
 //! The verbs: coordinates for a mesh, a start, and bounds.
+//!
+//! Source: ours: which steps, in which order (book, page `embedding`, "The way of a mesh").
 
 use crate::bounds::{StarBound, least_bound, refine_stars, star_bounds_of};
 use crate::error::EmbedError;
-use crate::improvement::{untangle_rings, untangle_whole};
+use crate::improvement::{self, untangle_rings, untangle_whole};
 use crate::options::{Objective, Options};
 use crate::pipeline::{NEAR_OPTIMUM, Normal, SMALL, run};
 use crate::problem::find_symmetry;
@@ -137,6 +139,23 @@ pub fn untangle_near(
         bad = untangle_whole(problem, &mut points, whole, context).0;
     }
     Ok((normal.restore(&points), bad.into_iter().map(HexId::new).collect()))
+}
+
+/// Positions at which cells deep inside that are tiny (less than a twentieth of the surface's edges in size) have grown, as far as the worst scaled
+/// Jacobian stays at `floor` or above; `None` if there are none, or none could grow. `points`: all positions, at which every cell is valid; those of
+/// the boundary stay as they are. The same for any number of threads; what `context` ends keeps what had grown.
+///
+/// # Errors
+/// As [`embed`], for a mesh without hexes or positions that cannot be used.
+pub fn inflate(
+    mesh: &HexMesh,
+    points: &[[f64; 3]],
+    floor: f64,
+    context: &Context<'_>,
+) -> Result<Option<Vec<[f64; 3]>>, EmbedError> {
+    let normal = Normal::new(mesh, points, Some(points))?;
+    let mut at = normal.with_start(points);
+    Ok(improvement::inflate(&normal.problem, &mut at, floor, context).then(|| normal.restore(&at)))
 }
 
 /// The vertex-star upper bounds of all boundary vertices, ascending by vertex. All count the corners with at most one free edge;

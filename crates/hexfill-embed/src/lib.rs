@@ -53,7 +53,7 @@ mod solvers;
 mod starts;
 
 pub use bounds::{CornerLimit, EdgeLimit, StarBound, SurfaceLimits, VertexLimit, surface_limits};
-pub use embed::{embed, quick_star_bound, star_bounds, tutte_start, untangle_near};
+pub use embed::{embed, inflate, quick_star_bound, star_bounds, tutte_start, untangle_near};
 pub use error::EmbedError;
 pub use open::{Open, OpenEffort, open_start};
 pub use options::{Objective, Options};

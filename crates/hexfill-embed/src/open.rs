@@ -2,6 +2,8 @@
 //!
 //! Over each quad of the front stands a pyramid with one apex inside the void, and the four corners at its base take part in the energy. So the front
 //! stays star-shaped seen from the apex: a pillow by scaling towards it is valid, and whatever is laid next finds room. The apex is held.
+//!
+//! Source: ours, with the energy of Garanzha et al. 2021.
 
 use crate::cell::bisection::Sign;
 use crate::cell::frame::{BOTTOM_CORNERS, Frame, MIXED};

@@ -1,4 +1,6 @@
 //! Ids as plain numbers in reports.
+//!
+//! Source: ours.
 
 use hexfill_mesh::{Edge, HexId, QuadId, VertexId};
 use serde::{Serialize, Serializer};

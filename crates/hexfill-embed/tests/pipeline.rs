@@ -44,8 +44,7 @@ fn the_pyramid_with_36_hexes_reaches_its_optimum() {
 fn the_spindle_with_40_hexes_has_coordinates() {
     let sample = Sample::read("spindle_40");
     let mesh = sample.mesh();
-    let mut options = Options::default();
-    options.starts = 1;
+    let options = Options::default().with_starts(1);
     let done = embed(&mesh, &sample.boundary_points, None, &options, &Context::default()).unwrap();
     let (valid, [lower, _]) = certified(&mesh, &done.points);
     assert!(valid && lower >= 0.239, "{lower}");
@@ -73,8 +72,7 @@ fn larger_pyramids_reach_the_same_optimum_and_one_more() {
         let sample = Sample::read(name);
         let mesh = sample.mesh();
         assert_eq!(mesh.n_hexes(), hexes);
-        let mut options = Options::default();
-        options.starts = 1;
+        let options = Options::default().with_starts(1);
         let done = embed(&mesh, &sample.boundary_points, None, &options, &Context::default()).unwrap();
         let (valid, [lower, _]) = certified(&mesh, &done.points);
         assert!(valid && lower >= least, "{name} {lower}");
@@ -108,9 +106,7 @@ fn symmetric_positions_are_symmetric_and_as_good() {
     for (name, order, least) in [("pyramid_36", 4, 0.3162), ("spindle_40", 4, 0.19)] {
         let sample = Sample::read(name);
         let mesh = sample.mesh();
-        let mut options = Options::default();
-        options.symmetric = true;
-        options.starts = 2;
+        let options = Options::default().with_symmetric(true).with_starts(2);
         let done = embed(&mesh, &sample.boundary_points, None, &options, &Context::default()).unwrap();
         assert_eq!(done.report.symmetries, order, "{name}");
         let (valid, [lower, _]) = certified(&mesh, &done.points);
@@ -205,13 +201,10 @@ fn same_bytes_for_any_number_of_threads() {
     let (grid_mesh, grid_start) = grid(5, 0.9);
     let mesh = sample.mesh();
     let run = |threads: usize| {
-        let mut options = Options::default();
-        options.threads = threads;
-        options.starts = 3;
+        let options = Options::default().with_threads(threads).with_starts(3);
         let context = Context { seed: 42, ..Context::default() };
         let a = embed(&mesh, &sample.boundary_points, None, &options, &context).unwrap();
-        options.whole_limit = 20; // patches
-        options.programs = 6;
+        let options = options.with_whole_limit(20).with_programs(6); // patches
         let b = embed(&grid_mesh, &grid_start, Some(&grid_start), &options, &context).unwrap();
         (a, b)
     };
@@ -300,11 +293,9 @@ fn a_ball_behind_a_pillow_keeps_its_edges() {
     let n = 14;
     let (mesh, points) = ball(n);
     assert_eq!(mesh.n_hexes(), n * n * n + 6 * n * n);
-    let mut options = Options::default();
-    options.starts = 1;
-    options.smooth_start = true;
+    let options = Options::default().with_starts(1).with_smooth_start(true);
     for local_limit in [1000, 20_000] {
-        options.local_limit = local_limit;
+        let options = options.with_local_limit(local_limit);
         let done = embed(&mesh, &points, Some(&points), &options, &Context::default()).unwrap();
         // Edges of the surface are 0.07 and longer.
         assert!(done.report.shortest_edge > 0.01, "{local_limit} {}", done.report.shortest_edge);

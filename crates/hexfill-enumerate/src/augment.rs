@@ -10,6 +10,8 @@
 //!   canonical labelling. Most children are settled before a labelling is needed.
 //! * Rule `weill` is not: a cube could have been last only if the rest is itself a class of the level before, which a set of
 //!   hashes of that level answers. So its memory is one level less than that of the level engine.
+//!
+//! Source: McKay 1998; the order of the cubes and the cheap invariants are ours.
 
 use crate::canonical::{Code, Labelling, canonical, cube_invariants, search};
 use crate::complex::Complex;

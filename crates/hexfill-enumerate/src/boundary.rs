@@ -6,6 +6,8 @@
 //!
 //! The *key* (Weill) is the multiset of pairs of the lengths of the two chords through each quad, where a chord's
 //! length is the number of distinct quads it passes.
+//!
+//! Source: ours; keys: Weill.
 
 use crate::complex::{Complex, FREE, MAX_CUBES};
 use crate::frames::TURN;
@@ -83,6 +85,8 @@ impl Boundary {
                 let (a, f) = b.owner[q];
                 let mut a = a as usize % MAX_CUBES;
                 let (mut g, mut l) = TURN[f as usize][k];
+                // Through the fan of cubes round the edge to the other boundary quad of the same fan: an edge that
+                // the solid touches twice is two edges here.
                 while c.next[a][g as usize % 6] != FREE {
                     let side = g as usize % 6;
                     let (p, r) = (FACETS[side][l as usize & 3], FACETS[side][(l as usize + 1) & 3]);
@@ -207,6 +211,7 @@ impl Boundary {
             }
             count += 1;
         }
+        // A vertex counts once for each fan of quads: one that the boundary passes twice is two.
         let mut seen = [0u8; MAX_QUADS];
         for q in 0..n {
             for k in 0..4 {

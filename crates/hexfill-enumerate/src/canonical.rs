@@ -10,6 +10,8 @@
 //! needed; nauty serves as an oracle outside this crate.
 //!
 //! The form depends on the constants in this file: [`FORM_VERSION`] goes into every ledger.
+//!
+//! Source: Brinkmann, McKay 2007 (codes of plane graphs), for cubes ours.
 
 use crate::complex::{Complex, FREE, MAX_CUBES, MAX_VERTICES};
 use crate::error::EnumerateError;

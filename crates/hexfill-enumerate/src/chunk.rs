@@ -3,6 +3,8 @@
 //! The tree of canonical augmentations is cut at one level into *nodes*, whose order is fixed by the parameters alone; chunk k
 //! of K has the nodes whose number is k modulo K, with all that is below them. So the chunks of any K partition the
 //! classes, and threads, job arrays and MPI ranks are drivers of one function, [`Plan::run`].
+//!
+//! Source: Brinkmann, McKay 2007 (`res/mod`); sums that add up are ours.
 
 use crate::augment::{Members, Walk, members};
 use crate::canonical::{Code, canonical};
@@ -69,6 +71,8 @@ impl Plan {
                                 .into(),
                     });
                 }
+                // Three levels below a node are work enough for a chunk, and the nodes so few that they are made anew
+                // by everyone.
                 let split = params.cubes.saturating_sub(3).max(1);
                 let cube = Complex::cube();
                 let mut nodes = vec![(cube, canonical(&cube).automorphisms)];
@@ -86,6 +90,8 @@ impl Plan {
                 }
                 Nodes::Early(nodes)
             }
+            // Not hereditary: whether a cube was last can only be told by whether the rest is a class of the level
+            // before, so all of that level is needed.
             Rule::Weill => {
                 let mut levels = all_levels(&before, options, Wanted::default(), true, ctx)?;
                 let codes = levels.pop().map(|level| level.codes).unwrap_or_default();

@@ -4,6 +4,8 @@
 //! cubes is an `and`. Invariant: two sides with the same four vertices are glued to each other; cubes are
 //! connected through glued sides. When the complex was made orientable, every cube is positively oriented
 //! (outward sides run against each other along the common quad), which the enumerators preserve.
+//!
+//! Source: ours.
 
 use crate::error::EnumerateError;
 use crate::frames::{ACROSS, MIRROR, SIDE};
@@ -88,6 +90,7 @@ impl Complex {
         c.next = [[FREE; 6]; MAX_CUBES];
         for a in 0..cubes.len() {
             for b in 0..a {
+                // Fewer than four common vertices hold no side.
                 let common = c.sets[a] & c.sets[b];
                 if common.count_ones() < 4 {
                     continue;
@@ -286,6 +289,7 @@ impl Complex {
                 out.next[b as usize % MAX_CUBES][self.opposite_side(a, f) % 6] = FREE;
             }
         }
+        // The order of cubes is no part of a complex, so the gap is closed with the last one and one cube is renamed.
         out.cubes[a] = out.cubes[last];
         out.sets[a] = out.sets[last];
         out.next[a] = out.next[last];

@@ -1,4 +1,6 @@
 //! Drivers over the chunk function: threads, with or without a ledger.
+//!
+//! Source: ours.
 
 use crate::chunk::{Chunk, ChunkResult, Plan};
 use crate::error::EnumerateError;

@@ -8,6 +8,8 @@
 //! common quad is side `f` of the cube left and side `f ^ 1` of the cube entered, and its corners keep their two
 //! coordinates in the quad. Thus `frame of B = COMPOSE[across(A, side)][frame of A]` for any frame of A,
 //! which makes a breadth-first walk from a flag a matter of table look-ups.
+//!
+//! Source: ours.
 
 use hexfill_mesh::cube::{EDGES, FACETS, POSITIONS, corner_at};
 
@@ -233,6 +235,7 @@ const fn build_edges_off() -> [u16; 64] {
         let mut e = 0;
         while e < 12 {
             let [a, b] = EDGES[e];
+            // Loops by hand, as constant evaluation has no iterators.
             let mut on = false;
             let mut f = 0;
             while f < 6 {

@@ -2,6 +2,8 @@
 //!
 //! The keys are hashes already, so their own bits choose shard and slot. Memory doubles shard by shard when a shard is
 //! three quarters full; the largest momentary need is one shard's copy.
+//!
+//! Source: ours.
 
 use std::sync::{Mutex, PoisonError};
 

@@ -1,4 +1,6 @@
 //! What the enumeration writes into its ledger (see `hexfill-ledger`): parameters, counts a chunk, listed codes beside it.
+//!
+//! Source: ours.
 
 use crate::canonical::{Code, FORM_VERSION};
 use crate::chunk::{Chunk, ChunkResult};

@@ -4,6 +4,8 @@
 //! hashes) and a code for each class that is extended further. Threads share the set; which of them meets a class first
 //! does not matter, since only its canonical code and invariants are used. Codes are sorted at the end of a
 //! level, so that the result does not depend on the threads.
+//!
+//! Source: Weill, who goes level by level too.
 
 use crate::canonical::{Code, canonical};
 use crate::complex::Complex;
@@ -127,6 +129,8 @@ fn grow<K: HashKey>(
         let mut codes = Vec::new();
         let mut found = Found::default();
         loop {
+            // Which thread takes which parents does not matter: what a class counts is computed from its canonical
+            // code, and whoever is first to insert it counts it.
             let start = cursor.fetch_add(BLOCK, Ordering::Relaxed);
             if start >= parents.len() {
                 break;
@@ -171,6 +175,7 @@ fn grow<K: HashKey>(
     hexfill_ledger::run_on(options.threads, &work)?;
     let mut level =
         Level { cubes, tally: Tally::default(), codes: Vec::new(), found: Found::default(), set_bytes: set.bytes() };
+    // Sums do not care about the order of the parts; lists are sorted below.
     for (tally, codes, found) in parts.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner) {
         level.tally.merge(&tally);
         level.codes.extend(codes);

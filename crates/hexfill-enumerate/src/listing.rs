@@ -1,4 +1,6 @@
 //! How an object is written on one line, and the order of cubes that rule `weill` needs.
+//!
+//! Source: Weill for the form of a line.
 
 use crate::canonical::{Code, canonical};
 use crate::complex::{Complex, FREE, side_set_of};

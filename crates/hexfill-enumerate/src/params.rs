@@ -1,4 +1,6 @@
 //! What to enumerate: size, rule, filter. Two runs with equal parameters count the same things.
+//!
+//! Source: Weill for the filter by chords.
 
 use crate::complex::{Complex, MAX_CUBES};
 use crate::error::EnumerateError;

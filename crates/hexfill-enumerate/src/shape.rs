@@ -1,4 +1,6 @@
 //! What is counted of a complex besides its class: vertices, Euler characteristic, chords, boundary components, ball or not.
+//!
+//! Source: ours.
 
 use crate::boundary::{Boundary, Components};
 use crate::complex::{Complex, FREE, MAX_CUBES, MAX_VERTICES};
@@ -69,6 +71,8 @@ fn links_are_simple(c: &Complex, used: u64, joined: &[u64; MAX_VERTICES]) -> boo
                 return false;
             }
         }
+        // Orientable was made sure of before: a closed link of characteristic 2 is a sphere, one with a rim of
+        // characteristic 1 a disk.
         let euler = vertices - twice_edges / 2 + triangles;
         if euler != 1 && euler != 2 {
             return false;

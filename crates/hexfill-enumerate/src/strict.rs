@@ -8,6 +8,8 @@
 //! other five facets are free or glued to a later quad by one of four maps (eight with non-orientable gluings).
 //! Vertices that can never be merged (they share a cube, or their cubes meet in a way that would become improper) are
 //! tabulated first, which settles most trials with two bit tests.
+//!
+//! Source: ours.
 
 use crate::boundary::{Boundary, MAX_QUADS};
 use crate::complex::{Complex, FREE, MAX_CUBES, MAX_VERTICES, reach, set_of};
@@ -384,10 +386,12 @@ impl<F: FnMut(&Complex, u8)> Site<'_, F> {
         });
         let own = set_of(&corners);
         let renamed;
+        // Most candidates merge no old vertices, and then the parent's own tables serve.
         let (cubes, sets) = if state.n_classes == 0 {
             (&parent.cubes, &parent.sets)
         } else {
             renamed = merged(parent, state);
+            // A merge may make two old cubes improper that the new one does not touch.
             if !old_pairs_are_proper(parent, &renamed.0, &renamed.1) {
                 return;
             }
@@ -398,6 +402,7 @@ impl<F: FnMut(&Complex, u8)> Site<'_, F> {
             let legal = match common.count_ones() {
                 0 | 1 => true,
                 2 => joined(&corners, common) && joined(&cubes[a], common),
+                // Four common vertices are legal only as the facet that was glued.
                 4 => state.touched >> a & 1 == 1,
                 _ => false,
             };

@@ -2,6 +2,8 @@
 //!
 //! The mass sums are exact: the automorphism group of a complex of n cubes acts freely on its 48 n flags, so
 //! 1 / |Aut| is a multiple of 1 / [`MASS_UNIT`] for every n up to 12.
+//!
+//! Source: ours; the orbit-stabiliser theorem.
 
 use crate::boundary::Boundary;
 use crate::canonical::Labelling;

@@ -2,6 +2,8 @@
 //!
 //! A surface is recognised by its number of quads first, then by its key, and last by its canonical signature, which
 //! decides. A boundary that touches itself is no surface and is never recognised.
+//!
+//! Source: ours; keys: Weill.
 
 use crate::boundary::Boundary;
 use crate::canonical::Code;

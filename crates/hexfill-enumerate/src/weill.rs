@@ -9,6 +9,8 @@
 //!
 //! The rule is not hereditary (a cube may be removable without the rest being reachable).
 //! Each new cube is made once: its glued facet on the lowest quad is its bottom, seen in one fixed rotation.
+//!
+//! Source: Weill; the exact rule was found by experiment against his table (book, page `enumerate`, "Two rules").
 
 use crate::boundary::Boundary;
 use crate::complex::{Complex, FREE, MAX_CUBES, MAX_VERTICES, set_of, side_set_of};
@@ -165,6 +167,7 @@ impl<F: FnMut(&Complex, u8)> Site<'_, F> {
             }
         }
         // Rules 1 and 2.
+        // Sets of vertices in one word: an intersection is an `and`, and most candidates end here.
         let free: [u64; 6] =
             std::array::from_fn(|f| if glued >> f & 1 == 1 { 0 } else { side_set_of(&candidate.corners, f) });
         for other in &parent.sets[..parent.n_cubes()] {

@@ -1,4 +1,6 @@
 //! Angles between directions, in radians.
+//!
+//! Source: textbook knowledge; by the arctangent, which keeps its digits near 0 and 180 degrees where the arccosine does not.
 
 use crate::vector::{Vector, add_scaled, cross, dot, norm, unit};
 use std::f64::consts::TAU;

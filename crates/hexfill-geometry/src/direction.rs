@@ -4,6 +4,8 @@
 //! hull (duality): found by walking over supports of at most three normals (P. Wolfe, *Finding the nearest point in a polytope*,
 //! 1976). If the hull holds the origin, the maximum is not positive, and at the optimum three normals have equal products (the hull's
 //! nearest facet): all triples are tried. Either way the value is that of the direction returned.
+//!
+//! Source: Wolfe 1976 (the nearest point of a polytope).
 
 use crate::vector::{Vector, add, add_scaled, cross, dot, norm, scale, sub, unit};
 

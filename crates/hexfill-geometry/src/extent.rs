@@ -1,4 +1,6 @@
 //! How large things are and where: boxes round points, volumes of tetrahedra, centroids of surfaces.
+//!
+//! Source: textbook knowledge.
 
 use crate::vector::{Vector, cross, det, norm, sub};
 

@@ -5,6 +5,34 @@
 //! ([`best_direction`]); with several free edges every determinant is linear in each of them, and [`climb_star`] looks for
 //! good directions. The first is exact up to rounding, an upper bound and attained; the second is attained only, and says nothing about
 //! what cannot be reached.
+//!
+//! | question | verb |
+//! |---|---|
+//! | vectors as arrays | [`dot`], [`cross`], [`det`], [`unit`] and their like |
+//! | the angle of a corner, the dihedral angle at an edge | [`corner_angle`], [`dihedral_angle`] |
+//! | inside or outside of a closed surface, and which of several surfaces lies in which | [`winding_number`], [`holders`] |
+//! | the best direction of one free edge, good directions of several | [`best_direction`], [`climb_star`] |
+//!
+//! Not for decisions that must be exact: all of it is plain floating point. Where a sign decides (Delaunay tetrahedra, crossings) the `robust` predicates are
+//! asked, and what is certified of a mesh is computed by `hexfill-check`, which shares nothing with this crate but the definition of a number.
+//!
+//! Invariants: no type of its own for a vector, `[f64; 3]` throughout, so nothing is converted; lengths are in the unit of the points given, angles in
+//! radians; the same input gives the same bits. Papers: Wolfe 1976 (one free edge), van Oosterom, Strackee 1983 (solid angles); the keys are those of the
+//! book's bibliography.
+//!
+//! ```
+//! use hexfill_geometry::{best_direction, winding_number};
+//!
+//! // The tetrahedron of three unit axes, its faces seen from outside counter-clockwise.
+//! let p = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+//! let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]].map(|f| f.map(|v: usize| p[v]));
+//! assert!((winding_number(faces, [0.1, 0.1, 0.1]) - 1.0).abs() < 1e-12);
+//! assert!(winding_number(faces, [1.0, 1.0, 1.0]).abs() < 1e-12);
+//!
+//! // One edge between three walls at right angles does best in the middle: 1 / sqrt 3.
+//! let best = best_direction(&[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+//! assert!((best.value - 3.0f64.sqrt().recip()).abs() < 1e-12);
+//! ```
 
 // Vectors read like their formulas with indices.
 #![allow(clippy::needless_range_loop)]

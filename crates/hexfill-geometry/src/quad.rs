@@ -1,4 +1,6 @@
 //! Quads taken for two triangles.
+//!
+//! Source: ours.
 
 use crate::vector::{Vector, det};
 

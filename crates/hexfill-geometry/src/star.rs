@@ -4,6 +4,8 @@
 //! b from some starts, then turns one free edge at a time to its best direction (each is a program with a closed form, see
 //! [`best_direction`]). What is returned is attained; that nothing is better is not claimed.
 //! (`hexfill-embed` has the branch and bound that proves it.)
+//!
+//! Source: ours; with one free edge a turn is Wolfe 1976.
 
 use crate::direction::best_direction;
 use crate::vector::{Vector, add, add_scaled, cross, det, dot, norm, scale, unit};
@@ -62,6 +64,8 @@ pub fn climb_star(corners: &[[Ray; 3]], n_free: usize, enough: f64) -> Reached {
         return Reached { value: least, directions };
     }
     let first = star.relax(&first);
+    // Two starts that are no guess (from the best directions of corners with one free edge, and from none), then
+    // shaken copies of both.
     let none = star.relax(&vec![None; n_free]);
     let mut random = Random::new(17);
     let mut best = Reached { value: f64::NEG_INFINITY, directions: first.clone() };
@@ -177,6 +181,8 @@ impl Star<'_> {
 
     fn climb(&self, u: &mut Vec<Vector>, values: &mut [f64]) {
         let mut gradient = vec![[0.0; 3]; self.n_free];
+        // The soft minimum is smooth and at most log(n) / b below the true one: small b first, to get past kinks,
+        // then more and more exact.
         let mut b = 6.0;
         let mut step: f64 = 0.5;
         while b < 3000.0 {
@@ -184,6 +190,7 @@ impl Star<'_> {
             for _ in 0..15 {
                 self.soft(u, b, values, Some(&mut gradient));
                 for (g, &d) in gradient.iter_mut().zip(u.iter()) {
+                    // Directions stay on the sphere, so only the part of the gradient along it counts.
                     *g = add_scaled(*g, -dot(*g, d), d);
                 }
                 let size = gradient.iter().map(|&g| norm(g)).fold(0.0, f64::max);
@@ -206,6 +213,7 @@ impl Star<'_> {
             b *= 3.0;
             step = step.max(0.3 / b);
         }
+        // One edge at a time has a closed form: this takes off what the soft minimum left.
         for _ in 0..3 {
             for j in 0..self.n_free {
                 let normals: Vec<Vector> = self

@@ -1,4 +1,6 @@
 //! Vectors in three dimensions as plain arrays: no type to convert to, so files, solvers and pictures share them.
+//!
+//! Source: textbook knowledge.
 
 /// A point or a vector.
 pub type Vector = [f64; 3];

@@ -1,4 +1,6 @@
 //! Inside or outside: solid angles, winding numbers, and which of several closed surfaces lies in which.
+//!
+//! Source: van Oosterom, Strackee 1983 (the solid angle of a triangle).
 
 use crate::vector::{Vector, det, dot, norm, sub};
 use std::f64::consts::TAU;
@@ -30,7 +32,8 @@ pub fn winding_number(triangles: impl IntoIterator<Item = [Vector; 3]>, p: Vecto
 }
 
 /// For each of several closed surfaces of triangles, of any finite size, which others it lies in: an even number for the outside of a
-/// solid, an odd one for a cavity. Exact for disjoint surfaces; whatever the rounding says where they cross.
+/// solid, an odd one for a cavity. Exact for disjoint surfaces. Of two that cross, one lies in the other only if its box does and its first
+/// point.
 ///
 /// # Panics
 /// If a surface has no triangles.
@@ -38,10 +41,21 @@ pub fn holders(surfaces: &[Vec<[Vector; 3]>]) -> Vec<Vec<usize>> {
     let largest = surfaces.iter().flatten().flatten().flatten().fold(1e-300f64, |m, x| m.max(x.abs()));
     let small = |p: Vector| p.map(|x| x / largest);
     let winds = |surface: &[[Vector; 3]], p| winding_number(surface.iter().map(|t| t.map(small)), p).abs() > 0.5;
+    let boxes: Vec<[Vector; 2]> = surfaces.iter().map(|s| enclosing_box(s)).collect();
+    let is_in = |i: usize, o: usize| {
+        let ([low, high], [least, most]) = (boxes[i], boxes[o]);
+        (0..3).all(|c| least[c] <= low[c] && high[c] <= most[c]) && winds(&surfaces[o], small(surfaces[i][0][0]))
+    };
     let others = |i: usize| (0..surfaces.len()).filter(move |&other| other != i);
-    (0..surfaces.len())
-        .map(|i| others(i).filter(|&o| winds(&surfaces[o], small(surfaces[i][0][0]))).collect())
-        .collect()
+    (0..surfaces.len()).map(|i| others(i).filter(|&o| is_in(i, o)).collect()).collect()
+}
+
+/// The least and the largest coordinates.
+fn enclosing_box(triangles: &[[Vector; 3]]) -> [Vector; 2] {
+    let fold = |start: f64, choose: fn(f64, f64) -> f64| {
+        triangles.iter().flatten().fold([start; 3], |m, p| [0, 1, 2].map(|c| choose(m[c], p[c])))
+    };
+    [fold(f64::INFINITY, f64::min), fold(f64::NEG_INFINITY, f64::max)]
 }
 
 #[cfg(test)]
@@ -72,5 +86,12 @@ mod tests {
             let cubes: Vec<_> = cubes.into_iter().map(|(centre, r)| cube(centre, r * s)).collect();
             assert_eq!(holders(&cubes), [vec![1], vec![], vec![0, 1], vec![]]);
         }
+    }
+
+    #[test]
+    fn cubes_that_cross_lie_apart_though_a_corner_of_each_is_in_the_other() {
+        let cubes = [cube([0.0; 3], 1.0), cube([1.2, 1.1, 0.9], 1.0)];
+        assert!(winding_number(cubes[0].iter().copied(), cubes[1][0][0]).abs() > 0.5);
+        assert_eq!(holders(&cubes), [vec![], vec![]]);
     }
 }

@@ -1,5 +1,7 @@
 //! Data arrays on the way between [`MeshData`] and files: components side by side in memory, together in files; numbers on quads and
 //! on hexes apart in memory, one array over all cells in files.
+//!
+//! Source: ours.
 
 use crate::data::MeshData;
 use std::ops::Range;

@@ -2,6 +2,8 @@
 //!
 //! It keeps faces in order, sorts cells by kind, hands the arrays given "per cell of the file" to those cells they
 //! belong to, counts what is passed over, and turns an array of zeros back into "no tags".
+//!
+//! Source: ours.
 
 use crate::arrays::component;
 use crate::data::{MeshData, OtherFace, TagName, TagOn};

@@ -1,4 +1,6 @@
 //! gzip and Zstandard, recognised by their first bytes on reading and by the extension on writing.
+//!
+//! Source: RFC 1952 (gzip) and RFC 8878 (Zstandard) for the first bytes.
 
 use crate::format::Compression;
 use crate::limits;

@@ -3,6 +3,8 @@
 //!
 //! Invariants after reading: every index names a point (where there are coordinates), coordinates are finite,
 //! `other_faces` is sorted by position, and tag and data arrays are as long as what they describe.
+//!
+//! Source: ours.
 
 use crate::error::WriteError;
 use crate::format::Format;

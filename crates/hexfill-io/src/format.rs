@@ -1,4 +1,6 @@
 //! The file formats and the names they go by.
+//!
+//! Source: ours.
 
 use std::fmt;
 use std::path::Path;

@@ -3,6 +3,8 @@
 //! Groups may overlap, a point, face or cell has one tag: every *combination* of groups that occurs is a tag, and the names
 //! of a tag are those of its groups. A group that carries a number, as the `tag_7` of this program or the number of a physical
 //! group, gives the tag its number; other combinations get the next number that is free, in order of first appearance.
+//!
+//! Source: ours.
 
 use crate::data::{TagName, TagOn};
 use crate::limits::{GROUPS, GROUPS_OF_ONE};

@@ -1,5 +1,7 @@
 //! How much memory a file may ask for. Plain files get what their bytes are worth: nothing is reserved on the word of a count
 //! ([`RESERVE`]). Compressed data can claim a thousand times their size, so what they unpack to is limited here, in one place.
+//!
+//! Source: ours.
 
 use std::io;
 

@@ -1,4 +1,6 @@
 //! What a format has no place for, said before it is lost.
+//!
+//! Source: ours.
 
 use crate::data::{MeshData, TagOn};
 use crate::format::Format;

@@ -4,6 +4,8 @@
 //! Each entry is a list of positions in the VTK order: `theirs[i] = vtk[TABLE[i]]`. The tables of
 //! [`VOXEL`], [`PIXEL`] and [`OVM_ADD_CELL`] are involutions, so the same line also goes back.
 //! Wedges and pyramids are passed on as they come: the formats agree on their order in practice.
+//!
+//! Source: the manuals of the formats (the VTK formats, the Gmsh manual, Frey 2001, Kremer et al. 2013).
 
 /// VTK_VOXEL (VTK cell type 11), geogram and ultimaille: x fastest, then y, then z.
 pub const VOXEL: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];

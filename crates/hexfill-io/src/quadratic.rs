@@ -1,8 +1,10 @@
 //! Cells of second order: a node in the middle of every edge (20 nodes a hex, 8 a quad; serendipity, no nodes inside faces or cells).
 //!
 //! The edges stay straight, and so the cells are the same maps as before: the serendipity shape functions contain the trilinear ones, hence a
-//! node at the mean of two corners changes nothing (Zienkiewicz, Taylor, *The Finite Element Method*, 6.5). What is certified of a hex holds
+//! node at the mean of two corners changes nothing (Zienkiewicz, Taylor 2000). What is certified of a hex holds
 //! for its quadratic form, up to the rounding of the middles. Only written: readers keep corners (`linearised` brings them back).
+//!
+//! Source: Zienkiewicz, Taylor 2000 (serendipity elements).
 
 use crate::data::MeshData;
 use crate::error::QuadraticError;

@@ -1,4 +1,6 @@
 //! [`Quadratic`]: cells of second order, beside those of a mesh (see `quadratic.rs`).
+//!
+//! Source: ours.
 
 /// The faces and hexes of a mesh with the nodes of their edges, in the orders of VTK_QUADRATIC_QUAD and VTK_QUADRATIC_HEXAHEDRON:
 /// corners as in `quads` and `hexes`, then middles in the order of `QUAD_EDGES` and `HEX_EDGES` (`orders.rs`).

@@ -1,4 +1,6 @@
 //! Writing: checks first, then a temporary file beside the target, then a rename. Never half a file.
+//!
+//! Source: ours.
 
 use crate::compress::Packer;
 use crate::data::MeshData;

@@ -2,6 +2,8 @@
 //!
 //! One line at a time is in memory. Counts claimed by a file are never trusted: vectors are reserved for at most
 //! [`RESERVE`] items and grow with what really arrives, and binary blocks are read through a limit.
+//!
+//! Source: ours.
 
 use crate::data::TagName;
 use crate::error::{Place, Position, ReadError, snippet};

@@ -1,4 +1,6 @@
 //! Welding: points that lie in one spot become one, as at the seams that exporters of OBJ, STEP and multi-patch meshes leave.
+//!
+//! Source: ours.
 
 use crate::data::MeshData;
 use rustc_hash::{FxHashMap, FxHashSet};

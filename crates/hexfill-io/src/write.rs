@@ -1,4 +1,6 @@
 //! Helpers of the writers: numbers as text, counters, tags that must fit.
+//!
+//! Source: ours.
 
 use crate::data::MeshData;
 use crate::error::WriteError;

@@ -1,10 +1,12 @@
 //! [`without_sheets`]: what can go again, as long as the rest has valid positions.
+//!
+//! Source: Borden et al. 2002 (a sheet taken out); trying it on positions and keeping what stays valid is ours.
 
 use crate::laid_mesh::LaidMesh;
 use hexfill_embed::untangle_near;
 use hexfill_geometry::Vector;
 use hexfill_mesh::Context;
-use hexfill_search::{Collapse, Simplified, single_sheet_collapses};
+use hexfill_search::{Collapse, WithoutSheet, single_sheet_collapses};
 use rayon::prelude::*;
 
 /// Sheets tried at once; the first of them that can go goes.
@@ -34,15 +36,15 @@ pub(crate) fn without_sheets(mut laid: LaidMesh, n_surface: usize, trials: u32, 
 }
 
 /// The mesh at valid positions near those it had; `None` if none are found.
-fn placed(fewer: &Simplified, before: &LaidMesh, n_surface: usize, ctx: &Context<'_>) -> Option<LaidMesh> {
-    // Collapsing merges vertices, so each was there before; vertices of no hex are dropped.
-    let start: Vec<Vector> = fewer.origin.iter().map(|o| o.map(|v| before.points[v.index()])).collect::<Option<_>>()?;
-    debug_assert!((0..n_surface).all(|v| fewer.origin[v].is_some_and(|o| o.index() == v)));
+fn placed(fewer: &WithoutSheet, before: &LaidMesh, n_surface: usize, ctx: &Context<'_>) -> Option<LaidMesh> {
+    let start: Vec<Vector> = fewer.origin.iter().map(|v| before.points[v.index()]).collect();
+    debug_assert!((0..n_surface).all(|v| fewer.origin[v].index() == v));
     let quiet = Context { progress: None, ..*ctx };
     let (points, bad) = untangle_near(&fewer.mesh, &start, EFFORT.0, EFFORT.1, &quiet).ok()?;
     (bad.len() <= before.invalid).then(|| LaidMesh {
         mesh: fewer.mesh.clone(),
         points,
+        steps: fewer.hexes.iter().map(|h| before.steps[h.index()]).collect(),
         invalid: bad.len(),
         pillows: before.pillows,
     })

@@ -1,4 +1,6 @@
 //! [`Frame`]: where the work is done.
+//!
+//! Source: ours.
 
 use hexfill_geometry::{Vector, norm, sub};
 

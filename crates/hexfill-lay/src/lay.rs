@@ -1,4 +1,6 @@
 //! [`lay`]: the verb.
+//!
+//! Source: ours (book, page `shelling`, "Laying").
 
 use crate::fewer::without_sheets;
 use crate::frame::Frame;
@@ -34,11 +36,13 @@ impl Default for LayOptions {
 const SMALL: u64 = 150;
 /// Meshes from which sheets are taken.
 const KEPT: usize = 2;
+/// On surfaces of more quads only the one with fewest invalid hexes, then fewest hexes is given, as embedding another takes too long.
+const LARGE: usize = 500;
 /// Plans for one mesh: a jam that pillows do not clear asks for another.
 const PLANS: u64 = 12;
 
 /// Lays meshes for a surface whose vertices are at `points` (outward orientation), fewest hexes first; none if no sweep of it leaves one void that can be
-/// held open, or no attempt came to its end. The same for any number of threads.
+/// held open, or no attempt came to its end. At most one on surfaces of more than 500 quads. The same for any number of threads.
 pub fn lay(surface: &QuadSurface, points: &[Vector], options: &LayOptions, ctx: &Context<'_>) -> Vec<LaidMesh> {
     let frame = Frame::of(points);
     let within: Vec<Vector> = points.iter().map(|&p| frame.enter(p)).collect();
@@ -67,6 +71,11 @@ pub fn lay(surface: &QuadSurface, points: &[Vector], options: &LayOptions, ctx: 
         let mut laid: Vec<LaidMesh> =
             filled.into_par_iter().filter_map(|filled| filled.whole(options.sheets, ctx)).collect();
         laid.sort_by_key(|laid| laid.mesh.n_hexes());
+        if surface.n_quads() > LARGE {
+            // Stable: of those with fewest invalid hexes.
+            laid.sort_by_key(|laid| laid.invalid);
+            laid.truncate(1);
+        }
         for laid in &mut laid {
             laid.points.iter_mut().for_each(|p| *p = frame.leave(*p));
             laid.points[..points.len()].copy_from_slice(points);
@@ -92,7 +101,8 @@ impl<'a> Filled<'a> {
             to_the_end(Laying::new(patch.cut_out(open)), ctx.seed + number, most, ctx)?;
         let mesh = HexMesh::try_new(full.points.len(), &full.hexes).ok()?;
         // The pillow under the surface is the first.
-        let laid = LaidMesh { mesh, points: full.points, invalid: full.forgiven.len(), pillows: 1 + pillows };
+        let (points, steps, invalid) = (full.points, full.steps, full.forgiven.len());
+        let laid = LaidMesh { mesh, points, steps, invalid, pillows: 1 + pillows };
         Some(Self { open, patch, laid })
     }
 
@@ -102,9 +112,8 @@ impl<'a> Filled<'a> {
 
     /// The whole mesh, without sheets it can do without near the void.
     fn whole(self, sheets: u32, ctx: &Context<'_>) -> Option<LaidMesh> {
-        let LaidMesh { mesh, points, pillows, .. } = without_sheets(self.laid, self.patch.n_fixed(), sheets, ctx);
-        let (mesh, points) = self.patch.put_back(self.open, &mesh, &points)?;
-        Some(LaidMesh { mesh, points, invalid: self.open.forgiven.len(), pillows })
+        let laid = without_sheets(self.laid, self.patch.n_fixed(), sheets, ctx);
+        self.patch.put_back(self.open, laid)
     }
 }
 

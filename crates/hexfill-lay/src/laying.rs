@@ -1,7 +1,10 @@
 //! [`Laying`]: the hexes laid so far, their positions, and the front of what is open.
+//!
+//! Source: ours; why room can be made: Barnette 1970, and the pillows of Mitchell, Tautges 1995.
 
 use crate::open_mesh::OpenMesh;
 use crate::plan::Plan;
+use crate::step::Step;
 use crate::void_front::{NOT_YET, VoidFront, advanced};
 use hexfill_embed::OpenEffort;
 use hexfill_geometry::Vector;
@@ -78,11 +81,14 @@ impl Laying {
     pub(crate) fn lay_one(&mut self, underway: &mut Underway, any: bool, ctx: &Context<'_>) -> bool {
         let candidates = self.candidates(underway, any);
         let wider = || candidates.iter().take(TRIED_WIDER);
+        // All of them cheaply first; only where none finds room is more of the surroundings set free, which costs
+        // several times as much.
         let tries = candidates.iter().map(|c| (c, 1)).chain(wider().map(|c| (c, 2))).chain(wider().map(|c| (c, 3)));
         for (&(hex, covered), rings) in tries {
             if ctx.stop().is_some() {
                 return false;
             }
+            // A copy and no undo: a patch is small beside the untangling that follows.
             let mut trial = self.clone();
             let mut ids = underway.ids.clone();
             trial.add(&underway.plan.hexes[hex as usize], covered, &mut ids);
@@ -105,6 +111,8 @@ impl Laying {
         let (mut many, few): (Vec<_>, Vec<_>) = legal.partition(|(_, covered)| covered.count_ones() >= MANY);
         // Stable: in the order of the plan among equals.
         many.sort_by_key(|(_, covered)| std::cmp::Reverse(covered.count_ones()));
+        // Hexes that cover one or two quads make the front longer. They are laid when nothing else is left, and one
+        // at a time.
         if any || many.is_empty() {
             many.extend(few.first());
         }
@@ -120,6 +128,7 @@ impl Laying {
             }
             let at = |k: usize| (laid[k] != NOT_YET).then(|| self.open.points[laid[k] as usize]);
             let mut near: Vec<Vector> = CORNER_NEIGHBOURS[corner].iter().filter_map(|&k| at(k)).collect();
+            // All three neighbours are new as well; they come later in this loop.
             if near.is_empty() {
                 near = (0..8).filter_map(at).collect();
             }
@@ -131,6 +140,7 @@ impl Laying {
         }
         self.open.front = advanced(&self.open.front, &laid, covered);
         self.open.hexes.push(laid);
+        self.open.steps.push(Step::Laid);
     }
 
     /// Untangles round the last hex, with so many rings free. Whether that made everything valid.
@@ -144,6 +154,8 @@ impl Laying {
     /// not: then the pillow with fewest such cells is taken, and later hexes mend it.
     pub(crate) fn pillow(&mut self, ids: &mut [u32], ctx: &Context<'_>) {
         let mut best: Option<([usize; 2], Self, FxHashMap<u32, u32>)> = None;
+        // Valid in theory at any height, since the front is star-shaped seen from the apex; in floating point and
+        // with cells judged as a whole some heights are better.
         for height in HEIGHTS {
             let mut trial = self.clone();
             let copies = trial.put_pillow(height);
@@ -184,6 +196,7 @@ impl Laying {
             });
             let [a, b, c, d] = *quad;
             self.open.hexes.push([a, b, c, d, outer[0], outer[1], outer[2], outer[3]]);
+            self.open.steps.push(Step::Between);
         }
         self.pillows += 1;
         self.since = 0;
@@ -213,6 +226,7 @@ impl Laying {
         self.open.hexes.last().into_iter().flatten().for_each(|&v| near[v as usize] = true);
         for _ in 0..rings {
             let before = near.clone();
+            // The front's quads are cells too: the pyramids over them have to stay valid.
             let cells = self
                 .open
                 .hexes

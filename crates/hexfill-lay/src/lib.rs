@@ -20,6 +20,23 @@
 //! every such circuit is the shadow boundary of some convex position of the cube (Barnette 1970); pillows turn the front, which is
 //! star-shaped, into any other star-shaped one. How many are needed is not bounded by this argument; here they are counted, and it ends.
 //! Measured in `record/self-crossing-2026-11-22.md`.
+//!
+//! Invariants: the surface's vertices stay where they are, to the bit, and come first; between two hexes everything laid is valid in floating point, as is
+//! every pyramid over the front (so a pillow is always possible); attempts are numbered and independent, so the result is the same for any number of threads.
+//! Nothing is proved here: that is for `hexfill-check`. Papers: Barnette 1970 (room for a hex), Mitchell, Tautges 1995 (pillows), Borden et al. 2002 (sheets
+//! taken out); the keys are those of the book's bibliography.
+//!
+//! ```
+//! use hexfill_lay::{LayOptions, lay};
+//! use hexfill_mesh::{Context, QuadSurface};
+//!
+//! // A cube needs no laying: its sweep leaves no void, so nothing is laid and the sweep's own mesh is the answer.
+//! let quads = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
+//! let cube = QuadSurface::try_new(8, &quads)?;
+//! let points = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]].map(|p| p.map(f64::from));
+//! assert!(lay(&cube, &points, &LayOptions::default(), &Context::default()).is_empty());
+//! # Ok::<(), hexfill_mesh::SurfaceError>(())
+//! ```
 
 #![warn(unreachable_pub)]
 
@@ -31,7 +48,9 @@ mod laying;
 mod open_mesh;
 mod patch;
 mod plan;
+mod step;
 mod void_front;
 
 pub use laid_mesh::LaidMesh;
 pub use lay::{LayOptions, lay};
+pub use step::Step;

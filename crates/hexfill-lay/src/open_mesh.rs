@@ -1,5 +1,8 @@
 //! [`OpenMesh`]: the surface with the hexes that a sweep could glue, all at valid positions, and the void they leave.
+//!
+//! Source: ours.
 
+use crate::step::Step;
 use hexfill_embed::{Open, OpenEffort, open_start, untangle_near};
 use hexfill_geometry::Vector;
 use hexfill_mesh::{Context, HexMesh, QuadSurface};
@@ -24,6 +27,8 @@ const EFFORT: OpenEffort = OpenEffort { rounds: 100, iterations: 200, extra: 2 }
 #[derive(Clone, Debug)]
 pub(crate) struct OpenMesh {
     pub(crate) hexes: Vec<[u32; 8]>,
+    /// What made each of them.
+    pub(crate) steps: Vec<Step>,
     /// Those that stay come first: the surface's, and in a patch those of hexes outside.
     pub(crate) points: Vec<Vector>,
     pub(crate) n_fixed: usize,
@@ -45,7 +50,7 @@ pub(crate) fn swept(surface: &QuadSurface, points: &[Vector], ctx: &Context<'_>)
     let mut seen = FxHashSet::default();
     left.retain(|swept| seen.insert(swept.hexes.clone()));
     let mut open: Vec<OpenMesh> =
-        left.into_par_iter().filter_map(|swept| OpenMesh::placed(swept, points, &quiet)).collect();
+        left.into_par_iter().filter_map(|swept| OpenMesh::placed(swept, surface.n_quads(), points, &quiet)).collect();
     // Stable: among equals the first.
     open.sort_by_key(|open| (open.forgiven.len(), open.hexes.len() + HEXES_A_QUAD * open.front.len()));
     open
@@ -62,11 +67,14 @@ fn left_open(surface: &QuadSurface, points: &[Vector], seed: u64, ctx: &Context<
 
 impl OpenMesh {
     /// Positions for what a sweep made; `None` if not all of it is valid but for a few hexes at the surface.
-    fn placed(swept: Swept, surface: &[Vector], ctx: &Context<'_>) -> Option<Self> {
-        let Swept { hexes, front, n_vertices, .. } = swept;
+    fn placed(swept: Swept, n_quads: usize, surface: &[Vector], ctx: &Context<'_>) -> Option<Self> {
+        let Swept { hexes, front, n_vertices, plugs, .. } = swept;
+        let steps = Step::of_sweep(n_quads, plugs, hexes.len());
         let (points, apex) = open_start(&hexes, &front, n_vertices as usize, surface);
-        let mut open = Self { hexes, points, n_fixed: surface.len(), front, apex, forgiven: Vec::new() };
+        let mut open = Self { hexes, steps, points, n_fixed: surface.len(), front, apex, forgiven: Vec::new() };
         let [bad, pyramids] = open.untangle(&open.inner(), EFFORT, ctx);
+        // A pyramid that is not valid means that the apex does not see all of the void: no pillow could be put in
+        // later, and laying could not go on.
         if pyramids > 0 || bad * FEW > surface.len() {
             return None;
         }

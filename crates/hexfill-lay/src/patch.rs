@@ -1,6 +1,10 @@
 //! [`Patch`]: what lies round the void, where hexes are laid; the rest of the mesh need not be looked at.
+//!
+//! Source: ours.
 
+use crate::laid_mesh::LaidMesh;
 use crate::open_mesh::OpenMesh;
+use crate::step::Step;
 use hexfill_geometry::Vector;
 use hexfill_mesh::HexMesh;
 
@@ -60,6 +64,7 @@ impl Patch {
         let hexes = open.hexes.iter().zip(&self.inside).filter(|(_, is_in)| **is_in).map(|(hex, _)| hex);
         OpenMesh {
             hexes: hexes.map(|hex| hex.map(|v| own[v as usize])).collect(),
+            steps: open.steps.iter().zip(&self.inside).filter(|(_, is_in)| **is_in).map(|(step, _)| *step).collect(),
             points: self.ids.iter().map(|&v| open.points[v as usize]).collect(),
             n_fixed: self.n_fixed,
             front: open.front.iter().map(|q| q.map(|v| own[v as usize])).collect(),
@@ -77,15 +82,13 @@ impl Patch {
         self.n_fixed
     }
 
-    /// The whole mesh, once the patch and its void are filled by `mesh` at `points`, whose first vertices are those of the patch that stay.
-    pub(crate) fn put_back(
-        &self,
-        open: &OpenMesh,
-        mesh: &HexMesh,
-        points: &[Vector],
-    ) -> Option<(HexMesh, Vec<Vector>)> {
-        let mut hexes: Vec<[u32; 8]> =
-            open.hexes.iter().zip(&self.inside).filter(|(_, is_in)| !**is_in).map(|(hex, _)| *hex).collect();
+    /// The whole mesh, once the patch and its void are filled by `laid`, whose first vertices are those of the patch that stay.
+    pub(crate) fn put_back(&self, open: &OpenMesh, laid: LaidMesh) -> Option<LaidMesh> {
+        let LaidMesh { mesh, points, steps: inner, pillows, .. } = laid;
+        let outside = |h: &usize| !self.inside[*h];
+        let mut steps: Vec<Step> = (0..open.hexes.len()).filter(outside).map(|h| open.steps[h]).collect();
+        steps.extend(inner);
+        let mut hexes: Vec<[u32; 8]> = (0..open.hexes.len()).filter(outside).map(|h| open.hexes[h]).collect();
         let n = open.points.len() as u32;
         let place = |v: u32| if (v as usize) < self.n_fixed { self.ids[v as usize] } else { n + v };
         hexes.extend(mesh.hexes_raw().iter().map(|hex| hex.map(place)));
@@ -98,7 +101,8 @@ impl Patch {
         (0..).zip(&kept).for_each(|(new, &old)| name[old as usize] = new);
         hexes.iter_mut().flatten().for_each(|v| *v = name[*v as usize]);
         let points: Vec<Vector> = kept.into_iter().map(at).collect();
-        Some((HexMesh::try_new(points.len(), &hexes).ok()?, points))
+        let mesh = HexMesh::try_new(points.len(), &hexes).ok()?;
+        Some(LaidMesh { mesh, points, steps, invalid: open.forgiven.len(), pillows })
     }
 }
 
@@ -133,7 +137,8 @@ mod tests {
         let gone = hexes.remove(middle.unwrap());
         let front = FACETS.map(|f| f.map(|i| gone[i])).to_vec();
         let n_fixed = on.iter().filter(|on| **on).count();
-        (OpenMesh { hexes, points, front, apex: centre.map(|x| x + 0.5), forgiven: Vec::new(), n_fixed }, gone)
+        let steps = vec![Step::Sweep; hexes.len()];
+        (OpenMesh { hexes, steps, points, front, apex: centre.map(|x| x + 0.5), forgiven: Vec::new(), n_fixed }, gone)
     }
 
     #[test]
@@ -148,7 +153,10 @@ mod tests {
         let own = |v: u32| patch.ids.iter().position(|&id| id == v).unwrap() as u32;
         hexes.push(gone.map(own));
         let mesh = HexMesh::try_new(cut.points.len(), &hexes).unwrap();
-        let (whole, points) = patch.put_back(&open, &mesh, &cut.points).unwrap();
+        let steps = [cut.steps, vec![Step::Laid]].concat();
+        let laid = LaidMesh { mesh, points: cut.points.clone(), steps, invalid: 0, pillows: 0 };
+        let LaidMesh { mesh: whole, points, steps, .. } = patch.put_back(&open, laid).unwrap();
+        assert!(steps.len() == whole.n_hexes() && steps.ends_with(&[Step::Sweep, Step::Laid]));
         assert_eq!((whole.n_hexes(), points.len()), (N * N * N, open.points.len()));
         assert_eq!(points[..open.n_fixed], open.points[..open.n_fixed]);
         for hex in whole.hexes_raw() {

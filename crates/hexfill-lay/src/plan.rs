@@ -1,4 +1,6 @@
 //! [`Plan`]: hexes that fill a void, by topology alone.
+//!
+//! Source: ours.
 
 use hexfill_mesh::{Context, QuadSurface};
 use hexfill_search::{Atlas, FillOptions, fill_avoiding};
@@ -33,8 +35,7 @@ impl Plan {
 
 /// A complete filling, the one of that number among the best.
 fn filling(surface: &QuadSurface, number: usize, ctx: &Context<'_>) -> Option<Plan> {
-    let mut options = FillOptions::default();
-    (options.count, options.max_cavities, options.beam) = (number + 1, CAVITIES, BEAM);
+    let options = FillOptions::default().with_count(number + 1).with_max_cavities(CAVITIES).with_beam(BEAM);
     let found = fill_avoiding(surface, &[], Atlas::fewest(), &options, ctx)?.fillings;
     let mesh = &found.get(number % found.len().max(1))?.mesh;
     Some(Plan { hexes: mesh.hexes_raw(), n_vertices: mesh.n_vertices() })

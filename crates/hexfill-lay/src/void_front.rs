@@ -1,4 +1,6 @@
 //! [`VoidFront`]: what can be laid on the front of the void next.
+//!
+//! Source: ours; what may be glued so that the rest stays a ball is Müller-Hannemann 2001's shelling from outside, one hex at a time.
 
 use hexfill_mesh::cube::{EDGES, FACETS};
 use rustc_hash::{FxHashMap, FxHashSet};

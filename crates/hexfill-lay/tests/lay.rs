@@ -1,7 +1,7 @@
 //! Meshes laid in a surface whose chords cross themselves heavily, judged by the independent checker.
 
 use hexfill_check::{Judged, Level, Options, judge};
-use hexfill_lay::{LaidMesh, LayOptions, lay};
+use hexfill_lay::{LaidMesh, LayOptions, Step, lay};
 use hexfill_mesh::generate::{cube_surface, torus};
 use hexfill_mesh::{Context, QuadSurface};
 use std::path::Path;
@@ -18,6 +18,9 @@ fn radial() -> (QuadSurface, Points) {
 
 fn assert_sound(surface: &QuadSurface, points: &[[f64; 3]], laid: &LaidMesh) {
     assert!(laid.points[..points.len()] == *points, "the surface stays to the bit");
+    let n = |step: Step| laid.steps.iter().filter(|s| **s == step).count();
+    assert!(laid.steps.len() == laid.mesh.n_hexes() && n(Step::Laid) > 0 && n(Step::Sweep) > 0);
+    assert!(n(Step::Pillow) <= surface.n_quads() && n(Step::Plug) == 0);
     let (hexes, quads) = (laid.mesh.hexes_raw(), surface.quads_raw());
     let judged = Judged::connectivity(laid.mesh.n_vertices(), &hexes).with_points(&laid.points).with_surface(&quads);
     let report = judge(&judged, &Options::default().with_up_to(Level::L5), &Context::default());

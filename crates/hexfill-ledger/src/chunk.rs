@@ -1,4 +1,6 @@
 //! Chunks, the parts of a job array, and the processor time they take.
+//!
+//! Source: Brinkmann, McKay 2007 (`res/mod`).
 
 use crate::error::LedgerError;
 use serde::{Deserialize, Serialize};

@@ -3,6 +3,8 @@
 //! Each line is the xxh3-128 of the JSON that follows it; the first line is the header. A killed run loses only the chunks in flight: its
 //! last line may be torn, and a line without its end is dropped on reopening. Everything else that does not check is refused, with the
 //! line.
+//!
+//! Source: ours.
 
 use crate::chunk::Chunk;
 use crate::error::LedgerError;

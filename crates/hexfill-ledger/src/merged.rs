@@ -1,4 +1,6 @@
 //! Ledgers of one run, read together: gaps, overlaps and mixed parameters are refused.
+//!
+//! Source: ours.
 
 use crate::chunk::Chunk;
 use crate::error::LedgerError;

@@ -1,4 +1,6 @@
 //! Chunks on threads.
+//!
+//! Source: ours.
 
 use crate::chunk::Chunk;
 use hexfill_mesh::Context;

@@ -2,6 +2,8 @@
 //!
 //! A quad sphere always has one (all faces are even); on other surfaces an odd cycle may exist, and no hex mesh does if an odd
 //! cycle bounds a surface inside the domain (Erickson 2014).
+//!
+//! Source: Erickson 2014, section 4 (why odd cycles matter).
 
 use crate::ids::VertexId;
 use crate::surface::QuadSurface;
@@ -42,6 +44,7 @@ pub fn bipartition(surface: &QuadSurface) -> Result<Vec<bool>, OddCycle> {
         }
         parent[root] = VertexId::new(root);
         queue.push_back(VertexId::new(root));
+        // Breadth first, so that the odd cycle, where there is one, is made of two shortest paths and short.
         while let Some(v) = queue.pop_front() {
             let Some(first) = dart[v.index()] else { continue };
             for d in surface.round_vertex(first) {

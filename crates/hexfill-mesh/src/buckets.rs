@@ -1,4 +1,6 @@
 //! Lists of few elements, one an id, in two arrays (compressed sparse rows): what a `Vec<Vec<_>>` holds in a fraction of its space.
+//!
+//! Source: ours; compressed rows by counting sort.
 
 use crate::id_vec::Id;
 use std::marker::PhantomData;

@@ -4,6 +4,8 @@
 //! the darts; each chord is two of its cycles, one for each direction, exchanged by `d -> opposite(d)`. No cycle is its own reverse:
 //! in the middle of such a cycle a dart would be its own opposite or its own twin.
 //! Through each quad run two chords, perhaps the same one twice.
+//!
+//! Source: Thurston 1993 and Mitchell 1996, who use these curves; the permutation of darts is ours.
 
 use crate::ids::{Dart, QuadId};
 use crate::surface::QuadSurface;

@@ -1,4 +1,6 @@
 //! Parts of a hex mesh, and its orientation.
+//!
+//! Source: ours; breadth-first search.
 
 use crate::hexmesh::{Facet, HexMesh};
 use crate::ids::HexId;
@@ -96,6 +98,7 @@ pub fn orientation(mesh: &HexMesh) -> Result<Vec<bool>, NotOrientable> {
             for side in 0..6 {
                 let f = Facet::new(h, side);
                 let Some(g) = mesh.neighbour(f) else { continue };
+                // Two hexes of one handedness see their common quad in opposite senses.
                 let wanted = sign == agree(mesh, f, g);
                 match reflect[g.hex().index()] {
                     None => {

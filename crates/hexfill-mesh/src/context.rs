@@ -2,6 +2,8 @@
 //!
 //! Long work polls [`Context::stop`] at least every 0.1 s and, when told to stop, returns the best
 //! result so far together with the [`StopReason`].
+//!
+//! Source: ours.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};

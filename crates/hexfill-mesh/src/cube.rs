@@ -10,6 +10,8 @@
 //!        0--------1
 //! ```
 //! Bottom cycle `0 1 2 3`, top cycle `4 5 6 7`, and `i + 4` lies above `i`.
+//!
+//! Source: the VTK formats (numbering of VTK_HEXAHEDRON).
 
 use std::sync::OnceLock;
 
@@ -71,6 +73,7 @@ pub fn symmetries() -> &'static [[usize; 8]; 48] {
                     }
                     *slot = corner_at(image[0], image[1], image[2]);
                 }
+                // A permutation of the axes and some axes turned round: the determinant is the product of both signs.
                 let direct = even == flips.count_ones().is_multiple_of(2);
                 if direct { rotations.push(map) } else { reflections.push(map) }
             }

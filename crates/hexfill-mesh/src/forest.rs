@@ -1,4 +1,6 @@
 //! Union-find: things that are made one, two at a time (Tarjan 1975, with path halving).
+//!
+//! Source: Tarjan 1975.
 
 use crate::id_vec::{Id, IdVec};
 

@@ -5,6 +5,8 @@
 //! 0 for a vertex met for the first time (it gets the next label) or (next label - its label); the first of the four is raised by 1 to leave room
 //! for the boundary. The new hex's frame is the old one pushed through the facet. As vertices are labelled, identifications that no facet causes count too.
 //! Flags are restricted to a rare kind and to one for each orbit, as in `surface_code.rs`.
+//!
+//! Source: ours, after Brinkmann, McKay 2007 for surfaces.
 
 use crate::cube::{FACET_DIAGONALS, FACETS, POSITIONS, corner_at, symmetries};
 use crate::hexmesh::{Facet, HexMesh};
@@ -34,6 +36,7 @@ fn tables() -> &'static Tables {
     static TABLES: OnceLock<Tables> = OnceLock::new();
     TABLES.get_or_init(|| {
         let frames = symmetries().map(|s| s.map(|k| k as u8));
+        // A frame is told by three of its corners, so three octal digits are an index.
         let mut index = [u8::MAX; 512];
         for (i, frame) in frames.iter().enumerate() {
             index[octal(frame)] = i as u8;
@@ -135,6 +138,8 @@ impl<'a> HexWalker<'a> {
             at += 1;
             let hex = self.mesh.hex(h);
             for (s, corners) in FACETS.iter().enumerate() {
+                // Frames may be reflections, so a facet is not told by its number in the frame alone: a diagonal of
+                // it tells.
                 let [a, _, c, _] = corners.map(|i| usize::from(frame[i]));
                 let side = usize::from(tables.facet_with_diagonal[a][c]);
                 let Some(other) = self.mesh.neighbour(Facet::new(h, side)) else {
@@ -171,6 +176,7 @@ impl<'a> HexWalker<'a> {
                     } else {
                         next - *label
                     };
+                    // The first of the four is one higher, as 0 in its place says "boundary".
                     if !visit(number + u32::from(j == 0)) {
                         return;
                     }

@@ -4,6 +4,8 @@
 //! `.`. Two meshes have the same signature exactly if one becomes the other by renumbering vertices and hexes and choosing other frames for the hexes, reflections included
 //! (each part by itself). The oriented variant `H1+:` takes rotations only and so tells mirror images apart. Vertices no hex uses do not count. Parts that
 //! share vertices without being connected through quads have no signature: the code of a part does not say how parts hang together.
+//!
+//! Source: ours; a name that is its object's code is Regina's idea of signatures (Burton 2011).
 
 use crate::components::{disagreement, facet_components};
 use crate::cube::FACETS;
@@ -116,6 +118,8 @@ pub fn parse_hex_signature(signature: &str) -> Result<HexMesh, SignatureError> {
     let mut hexes: Vec<[u32; 8]> = Vec::new();
     let mut n_vertices = 0u32;
     for mut reader in components(signature, "hex mesh", prefix)? {
+        // The inverse of the walk in `hex_code.rs`: hexes in the order in which they were entered, their facets in
+        // the order of the frame. A facet that two hexes have already is one the walk passed in silence.
         let mut crowd = Crowd::default();
         let first_vertex = n_vertices;
         let mut at = hexes.len();
@@ -211,6 +215,8 @@ pub fn hex_automorphisms(mesh: &HexMesh) -> Result<Vec<HexAutomorphism>, Signatu
     };
     // Partial maps, with the parts already used as images.
     let mut partial = vec![(identity, vec![false; forms.len()])];
+    // An automorphism takes parts to parts of equal code, and a part onto another in as many ways as that one has
+    // flags of the smallest code: the map follows from where one flag goes.
     for form in &forms {
         source.code(form.flag);
         let mut extended = Vec::new();

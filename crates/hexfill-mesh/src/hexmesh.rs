@@ -2,6 +2,8 @@
 //!
 //! A value satisfies rule R1: every hex has 8 distinct vertices in range and every facet belongs to one hex
 //! (boundary) or two. Proper intersection, links and the prescribed boundary are for `hexfill-check` to judge.
+//!
+//! Source: ours.
 
 use crate::cube::{EDGES, FACETS};
 use crate::ids::{HexId, Offenders, VertexId};
@@ -297,6 +299,9 @@ fn glue_facets(n_vertices: usize, hexes: &[[VertexId; 8]]) -> Result<Vec<Facet>,
         *slot += 1;
     }
     drop(cursor);
+    // Two facets with the same four vertices are one quad if their cycles agree. In another cycle an edge of the one
+    // would be a diagonal of the other, which no mesh may have. Sorted and not hashed: the first offender named must
+    // not depend on a hash.
     let mut neighbour = vec![Facet::NONE; n_facets as usize];
     let mut bad = Offenders::default();
     for v in 0..n_vertices {

@@ -1,4 +1,6 @@
 //! Arrays indexed by the ids of one kind, so that the index of one array cannot be used for another.
+//!
+//! Source: ours.
 
 use std::fmt;
 use std::marker::PhantomData;

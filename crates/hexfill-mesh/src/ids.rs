@@ -2,6 +2,8 @@
 //!
 //! Limits: 2^32 - 1 vertices, 2^30 - 1 quads (a dart is `4 * quad + corner` in a `u32`),
 //! (2^32 - 1) / 6 hexes (a facet is `6 * hex + side` in a `u32`).
+//!
+//! Source: ours.
 
 use crate::id_vec::Id;
 use std::fmt;

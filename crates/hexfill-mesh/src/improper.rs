@@ -6,6 +6,8 @@
 //! vertices are joined by at most one edge of a [`QuadSurface`]). So it is enough to look at vertex pairs that are
 //! a diagonal: such a pair must be the diagonal of one quad only and no edge.
 //! On a sphere that is exactly 3-connectedness (Brinkmann, Greenberg, Greenhill, McKay, Thomas, Wollan 2005).
+//!
+//! Source: Brinkmann et al. 2005 (3-connected); the reduction to diagonals is ours.
 
 use crate::ids::{Edge, Offenders, QuadId};
 use crate::surface::QuadSurface;

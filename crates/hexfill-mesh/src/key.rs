@@ -2,7 +2,8 @@
 //!
 //! The length of a chord is the number of distinct quads it passes (a quad where it crosses itself counts once).
 //! Printed as `8x[8,16] 8x[16,16]`, pairs ascending. The key is an invariant, not a name: different surfaces may share it.
-//! Source: J.-C. Weill, "A tentative to break the pyramid's code" (poster, CEA).
+//!
+//! Source: Weill.
 
 use crate::chords::{Chord, chords, chords_by_quad};
 use crate::surface::QuadSurface;

@@ -1,6 +1,8 @@
 //! Orbits under the automorphisms found so far: union-find over flag indices, with a mark for orbits that need no further test.
 //!
 //! Invariant: members of one orbit have the same code, so what one test shows holds for all of them.
+//!
+//! Source: McKay 1998 for pruning by automorphisms; orbits of flags in a forest are ours.
 
 #[derive(Default)]
 pub(crate) struct Orbits {

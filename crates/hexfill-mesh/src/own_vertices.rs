@@ -1,4 +1,6 @@
 //! Surfaces of some quads of a larger whole, with vertices of their own.
+//!
+//! Source: ours.
 
 use crate::ids::{QuadId, VertexId};
 use crate::surface::{QuadSurface, SurfaceError};

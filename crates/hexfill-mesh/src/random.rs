@@ -1,4 +1,6 @@
 //! A small pseudo-random generator with a fixed specification: SplitMix64 (Steele, Lea, Flood 2014).
+//!
+//! Source: Steele, Lea, Flood 2014.
 
 /// SplitMix64: the same numbers from the same seed, everywhere and for ever.
 #[derive(Clone, Debug)]

@@ -2,7 +2,9 @@
 //!
 //! A sheet is a class of edges under "opposite in a quad". It crosses a hex once for each of the hex's three directions whose four edges are in the
 //! class, so it may cross itself in a hex (two directions) and even have a triple point there (three). Its boundary curves are chords of the mesh's
-//! boundary. Source: Folwell, Mitchell, "Reliable whisker weaving via curve contraction" (1999); Thurston 1993; Mitchell 1996.
+//! boundary.
+//!
+//! Source: Thurston 1993; Mitchell 1996; Folwell, Mitchell 1999.
 
 use crate::chords::Chord;
 use crate::components::root;
@@ -69,6 +71,8 @@ pub fn sheets(mesh: &HexMesh) -> Vec<Sheet> {
         let i = edges[first..begin[a.index() + 1] as usize].binary_search_by_key(&b, |e| e[1]);
         (first + i.expect("edges() lists the edges of every hex")) as u32
     };
+    // An edge by its rank among the sorted edges, and opposite edges of a hex made one: the classes are the sheets.
+    // The smaller rank stays the root, so that classes do not depend on the order of the hexes.
     let mut parent: Vec<u32> = (0..edges.len() as u32).collect();
     for hex in mesh.hexes() {
         for direction in EDGES.chunks_exact(4) {
@@ -103,6 +107,7 @@ pub fn sheets(mesh: &HexMesh) -> Vec<Sheet> {
     for &[a, b] in &edges {
         sheets[sheet_of(a, b)].n_edges += 1;
     }
+    // A quad is crossed twice, once between either pair of its opposite sides; the sheet may be the same both times.
     for f in mesh.facets().filter(|&f| mesh.neighbour(f).is_none_or(|g| f < g)) {
         let [a, b, c, _] = mesh.facet_vertices(f);
         sheets[sheet_of(a, b)].n_quads += 1;
@@ -111,6 +116,7 @@ pub fn sheets(mesh: &HexMesh) -> Vec<Sheet> {
     for (chord, [a, b]) in boundary_chords(mesh) {
         sheets[sheet_of(a, b)].boundary.push(chord);
     }
+    // Crossings of one hex follow each other, as they were pushed hex by hex.
     for sheet in &mut sheets {
         for run in sheet.crossings.chunk_by(|a, b| a.0 == b.0) {
             if run.len() > 1 {
@@ -146,6 +152,7 @@ fn boundary_chords(mesh: &HexMesh) -> Vec<(Chord, [VertexId; 2])> {
         let mut d = start;
         loop {
             seen[d.index()] = true;
+            // The other direction of the same curve begins here: it is not listed again.
             seen[d.opposite().index()] = true;
             cycle.push(d);
             let out = d.opposite();

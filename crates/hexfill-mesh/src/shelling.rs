@@ -5,6 +5,8 @@
 //! a closed mesh meets the others in its whole surface, which is allowed for the last one: the union is then a 3-sphere. Deciding shellability is
 //! NP-complete (Goaoc, Patak, Patakova, Tancer, Wagner 2019), even for balls (Patak, Tancer 2023); a greedy order is tried from a few starts, so `None` means
 //! "not found", not "none exists".
+//!
+//! Source: Goaoc et al. 2019 and Paták, Tancer 2023 for what cannot be hoped for; the test of one hex and the greedy order are ours.
 
 use crate::cube::{EDGES, FACETS};
 use crate::hexmesh::{Facet, HexMesh};
@@ -83,6 +85,8 @@ impl<'a> Shelling<'a> {
             .iter()
             .map(|hex| {
                 EDGES.map(|[i, j]| {
+                    // Numbers by first occurrence: the map is only looked up and never gone through, so its order
+                    // does not matter.
                     let next = ids.len() as u32;
                     *ids.entry((hex[i].min(hex[j]), hex[i].max(hex[j]))).or_insert(next)
                 })

@@ -3,6 +3,8 @@
 //! Parse, don't validate: [`QuadSurface::try_new`] is the only way in, so a value of the type *is* closed,
 //! manifold and consistently oriented. Vertices are ids only; positions live with the caller.
 //! Invariant: `twin[twin[d]] = d`, and the twin of a dart joins the same two vertices the other way round.
+//!
+//! Source: ours.
 
 use crate::ids::{Dart, Edge, Offenders, QuadId, VertexId};
 use std::fmt;
@@ -181,6 +183,8 @@ impl QuadSurface {
                 surface.degree[v.index()] += 1;
             }
         }
+        // In this order: orientation needs pairs of edges, and a vertex has one fan only if the quads round it turn
+        // the same way.
         surface.pair_edges()?;
         surface.orient()?;
         surface.check_fans()?;

@@ -8,6 +8,8 @@
 //!
 //! Symmetric surfaces would make the minimum quadratic (equal codes never differ early), so each automorphism found merges the orbits of the flags,
 //! and one flag an orbit is tried: a group of order g is found with log2 g full codes.
+//!
+//! Source: Brinkmann, McKay 2007; Hopcroft, Wong 1974; McKay 1998 for what automorphisms save.
 
 use crate::ids::{Dart, VertexId};
 use crate::orbits::{Orbits, keep_rarest, mix};

@@ -3,6 +3,8 @@
 //! A signature is `Q1:` and the smallest breadth-first code of each component (file `surface_code.rs`), components in ascending order, joined by
 //! `.`. Two surfaces have the same signature exactly if one becomes the other by renumbering vertices and quads and, perhaps, turning all of it inside out
 //! (a mirror image). Vertices that no quad uses do not count. Time near linear for surfaces without much hidden regularity.
+//!
+//! Source: ours, after Brinkmann, McKay 2007.
 
 use crate::ids::VertexId;
 use crate::signature_text::{SEPARATOR, SignatureError, components, push_number};
@@ -209,6 +211,8 @@ pub fn surface_isomorphism(a: &QuadSurface, b: &QuadSurface) -> Option<Vec<Optio
     if (a.n_quads(), a.n_used_vertices(), a.n_components()) != (b.n_quads(), b.n_used_vertices(), b.n_components()) {
         return None;
     }
+    // One component may be mirrored by itself. Several must all be mirrored or none: an inner wall turned the other
+    // way would be another solid.
     let (from, to) = if a.n_components() == 1 {
         (Form::of(a, Handedness::Both), Form::of(b, Handedness::Both))
     } else {
@@ -222,6 +226,7 @@ pub fn surface_isomorphism(a: &QuadSurface, b: &QuadSurface) -> Option<Vec<Optio
     }
     let mut map = vec![None; a.n_vertices()];
     let (mut walk_a, mut walk_b) = (Walker::new(a), Walker::new(b));
+    // Parts are sorted by code, so equal keys pair them; which of two equal parts goes where does not matter.
     for (x, y) in from.parts.iter().zip(&to.parts) {
         walk_a.code(x.flag);
         walk_b.code(y.flag);
@@ -253,6 +258,8 @@ fn maps(a: &QuadSurface, from: &Form, b: &QuadSurface, to: &Form) -> Vec<Vec<Ver
                 (i, walker_b.order.clone())
             })
             .collect();
+        // Every choice so far with every image not taken yet: a product over the components, so its size is the
+        // number of maps and cannot be less.
         let mut extended = Vec::new();
         for (map, used) in &partial {
             for (i, order) in images.iter().filter(|(i, _)| !used[*i]) {

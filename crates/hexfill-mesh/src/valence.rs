@@ -2,6 +2,8 @@
 //!
 //! In a regular grid an interior edge is in 4 hexes and a boundary edge in 2 (on a flat side); the others are *singular* and form the mesh's singular
 //! graph. Histograms are ordered maps, so that they print the same everywhere.
+//!
+//! Source: ours.
 
 use crate::components::{facet_components, n_vertex_components};
 use crate::cube::EDGES;

@@ -1,4 +1,6 @@
 //! `hexfill-mpi N`: every hex mesh of N cubes.
+//!
+//! Source: ours.
 
 use crate::manager::{self, Job};
 use anyhow::anyhow;

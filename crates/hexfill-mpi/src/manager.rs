@@ -1,6 +1,8 @@
 //! Manager and workers over MPI, whatever a chunk is: the loops, with messages as JSON.
 //!
 //! Rank 0 gives out chunks and takes results as they come; the other ranks run them. With one rank the manager does the work itself.
+//!
+//! Source: ours.
 
 use crate::protocol::{Answer, Book, Order};
 use anyhow::{Context as _, bail};

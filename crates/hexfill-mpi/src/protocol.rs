@@ -3,6 +3,8 @@
 //! A worker says `Ready`, gets a chunk, answers `Done` or `Failed`, and so on until it is told to stop. A chunk that failed is
 //! given to another worker; a worker that failed gets no more work. So the totals are those of any other run, or the
 //! run ends with the chunks that could not be done.
+//!
+//! Source: ours.
 
 use hexfill_ledger::Chunk;
 use serde::{Deserialize, Serialize};

@@ -1,4 +1,6 @@
 //! `hexfill-mpi search SIGNATURE --max-hexes H`: every hex ball with at most H hexes on a sphere, or the proof that there is none.
+//!
+//! Source: ours.
 
 use crate::manager::{self, Job};
 use anyhow::bail;

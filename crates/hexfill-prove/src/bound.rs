@@ -10,6 +10,8 @@
 //! The link of an open vertex is to be closed by a disk of triangles, one a hex, whose rim has one side for each open quad there. Only a
 //! triangle that *is* the disk has single hexes at neighbouring open edges; else those edges are ears, no two of them neighbours. A disk
 //! without an inner vertex has two ears or is that triangle. That bounds the number of single edges from above, and `a` from below.
+//!
+//! Source: ours; Euler's formula.
 
 use crate::state::State;
 
@@ -81,6 +83,7 @@ impl Fans {
                 }
             }
         }
+        // A vertex may have several fans while hexes round it are missing: each is a rim of its own.
         let mut seen = Darts([0; 64]);
         for q in state.open_quads() {
             for d in 4 * q..4 * q + 4 {
@@ -96,6 +99,8 @@ impl Fans {
     fn round(&mut self, state: &State, first: u16, single: &Darts, seen: &mut Darts) {
         let vertex = state.quad(first / 4)[usize::from(first % 4)];
         // Length, singles in all, and the largest set of singles no two of which are neighbours.
+        // Round a circle, so the run of singles at the beginning is joined with the one at the end: kept apart until
+        // the round is done.
         let (mut length, mut singles, mut apart) = (0, 0, 0);
         let (mut run, mut first_run, mut regular) = (0, None, true);
         let mut d = first;

@@ -1,4 +1,6 @@
 //! The name of a partly filled sphere up to given symmetries of the sphere: what lies behind each quad, read outside in.
+//!
+//! Source: ours, after Brinkmann, McKay 2007.
 
 use crate::state::{Hex, MAX_VERTICES};
 use hexfill_mesh::cube::FACETS;
@@ -42,6 +44,8 @@ fn one_code(
     let mut seen = vec![false; hexes.len()];
     let mut out = Vec::new();
     while let Some(near) = queue.pop_front() {
+        // A quad has at most two hexes behind it, the one it was reached from and the next; both may be seen already,
+        // where two ways meet.
         let here = behind.get(&sorted(near)).map_or(&[][..], Vec::as_slice);
         let Some(&h) = here.iter().find(|&&h| !seen[h]) else {
             out.push(if here.is_empty() { NO_HEX } else { SEEN_HEX });
@@ -49,6 +53,8 @@ fn one_code(
         };
         seen[h] = true;
         let far = above(&hexes[h], near);
+        // Labels in the order of the walk: interior vertices have no names of their own, so two states that differ by
+        // these get one code.
         for v in far.map(usize::from) {
             if label[v] == NO_HEX {
                 label[v] = next;

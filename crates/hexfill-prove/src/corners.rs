@@ -1,4 +1,6 @@
 //! The corners of the cube: how far apart they are, and which faces hold them.
+//!
+//! Source: ours.
 
 use hexfill_mesh::cube::POSITIONS;
 

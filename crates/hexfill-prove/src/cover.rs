@@ -2,6 +2,8 @@
 //!
 //! New vertices are interchangeable, so only the next unused id is tried. Under a symmetry a new vertex comes with its whole orbit, one
 //! try for each stabilizer it may have; the other vertices of the orbit are then old ones for the corners still to be chosen.
+//!
+//! Source: ours; hexes whose vertices are chosen from the boundary inward are the search of Verhetsel et al. 2018.
 
 use crate::corners::{DISTANCE, HULL};
 use crate::mirror::{Mirror, Sides};
@@ -106,10 +108,12 @@ pub(crate) fn covers<F: FnMut(&Cover) -> bool>(
         fresh: 0,
         visit,
     };
+    // Numbered from 1: 0 says that a vertex is no corner of this hex.
     for i in NEAR {
         search.place[usize::from(hex[i])] = i as u8 + 1;
     }
     let domains = search.first_domains(q);
+    // Without symmetry nothing has to agree with its images, and the tables for it stay untouched.
     if search.action.order() == 1 {
         search.choose(0, domains);
     } else {
@@ -205,6 +209,8 @@ impl<F: FnMut(&Cover) -> bool> Search<'_, F> {
             // A quad through a mirror is kept by it.
             return true;
         }
+        // First the hexes on one side of the mirror: their corners are on that side or on the mirror. Then those that
+        // the mirror keeps.
         let beyond = sides[usize::from(!second)] & self.made();
         let one_sided = self.one_sided;
         self.one_sided.add(k, second);
@@ -392,6 +398,8 @@ impl<F: FnMut(&Cover) -> bool> Search<'_, F> {
         if depth == 3 {
             return Some(out);
         }
+        // The same rule as for a finished hex, asked as soon as two of its far corners are known: a pair on one facet
+        // is free, or belongs to an open quad that is this very facet and so names its fourth corner.
         let near = NEAR.map(|i| self.cover.hex[i]);
         let free = self.state.body_row(v);
         // The facets on two sides of the quad: new, or an open quad that has both diagonals.
@@ -421,6 +429,7 @@ impl<F: FnMut(&Cover) -> bool> Search<'_, F> {
                 }
             }
         }
+        // A symmetry that keeps the hex carries chosen corners to chosen corners.
         let mut keeping = self.keeping;
         while keeping != 0 {
             let g = keeping.trailing_zeros() as usize;
@@ -460,6 +469,8 @@ impl<F: FnMut(&Cover) -> bool> Search<'_, F> {
         let (before, after) = self.shared.split_at_mut(depth + 1);
         let shared = &mut after[0];
         shared[..order].copy_from_slice(&before[depth][..order]);
+        // A corner that an image has as well is a shared vertex, and distances in the cube between shared ones must
+        // be the same in both: then what is shared is a vertex, an edge, a facet or the hex, or can still become so.
         for &g in self.action.others() {
             let g = usize::from(g);
             let at = usize::from(self.place[usize::from(self.action.image(g, v))]);

@@ -1,4 +1,6 @@
 //! Drivers over the chunks of a plan: threads, with or without a ledger.
+//!
+//! Source: ours.
 
 use crate::error::ProveError;
 use crate::mesh::{Mesh, signature_of};

@@ -1,4 +1,6 @@
 //! Numbers with an undo list: every change keeps the old value, so that a state goes back in time to the change.
+//!
+//! Source: ours.
 
 use std::ops::Index;
 

@@ -7,6 +7,14 @@
 //! * [`Problem`] says what is searched for, [`Plan`] cuts the tree into tasks that add up, [`Outcome`] is what they found.
 //! * Each mesh found is judged by `hexfill-check` before it counts.
 //!
+//! Not for finding a mesh where any will do: the tree grows exponentially with H, and surfaces of more than 98 quads are refused.
+//! `hexfill-search` finds small fillings in a moment and proves nothing; this crate finds all of them, or none and then there is none.
+//!
+//! Invariants: every ball with at most H hexes (and the symmetries imposed) is met, up to symmetries of the surface, and none twice in
+//! one piece of the tree; the pieces a tree is cut into depend on surface, bound and group alone, not on threads or machines; a run is
+//! finished only if every piece is in the ledger. Papers: Verhetsel et al. 2018 (bounds by such a search), Smith 1938 (what a
+//! mirror fixes); the keys are those of the book's bibliography, and its page `search` says what was proved.
+//!
 //! ```
 //! use hexfill_mesh::{Context, QuadSurface, cube::FACETS};
 //! use hexfill_prove::{Plan, Problem, search_whole};

@@ -1,4 +1,6 @@
 //! A mesh found, judged before it counts.
+//!
+//! Source: ours.
 
 use crate::error::ProveError;
 use crate::state::Hex;

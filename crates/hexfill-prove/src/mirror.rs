@@ -5,6 +5,8 @@
 //! * every vertex is on the mirror or on one of its sides, and a cell that the mirror does not keep has all its vertices on the mirror or
 //!   on one side: an inner point of it on the mirror would be in the cell's image too;
 //! * such a cell and its image share what the cell has on the mirror, nothing else.
+//!
+//! Source: Smith 1938 (the fixed points of an involution); the two rules are ours.
 
 use crate::state::MAX_VERTICES;
 use hexfill_mesh::{Forest, VertexId};

@@ -1,4 +1,6 @@
 //! A cover placed with all its images under the group.
+//!
+//! Source: ours.
 
 use crate::corners::DISTANCE;
 use crate::cover::Cover;

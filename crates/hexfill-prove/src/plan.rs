@@ -2,6 +2,8 @@
 //!
 //! Of tasks that symmetries of the boundary carry to each other one is kept: what lies below one is the image of what lies below the
 //! other. The tasks depend on surface, bound and group alone.
+//!
+//! Source: ours.
 
 use crate::code::code;
 use crate::cover::Cover;
@@ -199,6 +201,7 @@ impl Plan {
         let boundary: Vec<[u8; 4]> = problem.surface.quads().iter().map(|q| q.map(|v| v.0 as u8)).collect();
         let n_boundary = problem.surface.n_vertices();
         let mut plan = Self { problem, root, tasks: vec![Task { covers: Vec::new(), path: 0 }], split_nodes: 0 };
+        // Level by level, so that a task is a path of covers and the same tasks come out whoever cuts.
         while !plan.tasks.is_empty() && plan.tasks.len() < TASKS {
             let mut next = Vec::new();
             let mut seen = FxHashSet::default();

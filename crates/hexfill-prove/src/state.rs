@@ -12,6 +12,8 @@
 //!   disk as its link.
 //!
 //! All changes are journalled; `undo` goes back.
+//!
+//! Source: ours; the pair table is that of `topology/star.rs` in `hexfill-check`.
 
 use crate::error::ProveError;
 use crate::journal::Journal;
@@ -156,6 +158,8 @@ impl State {
         for quad in surface.quads() {
             s.add_quad(quad.map(|v| v.0 as u8));
         }
+        // An edge of the sphere is open between its two quads; the outside counts as the path from the one to the
+        // other, so the last hex there closes a circle.
         for d in surface.darts() {
             let (u, v) = (surface.origin(d).index(), surface.target(d).index());
             s.words.set(PAIRS + d.index(), surface.twin(d).0 as u16);

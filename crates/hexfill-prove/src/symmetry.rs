@@ -2,6 +2,8 @@
 //!
 //! An automorphism of a ball mesh is determined by what it does on the boundary, so a group of automorphisms of the mesh *is* a subgroup
 //! of the boundary's automorphism group; how it acts on an interior vertex is told by the vertex's stabilizer.
+//!
+//! Source: ours.
 
 use crate::mirror::{Mirror, Sides, halves};
 use crate::state::MAX_VERTICES;
@@ -36,6 +38,7 @@ impl Symmetries {
         let all = surface_automorphisms(surface);
         let colour = bipartition(surface).ok()?;
         let elements: Vec<Vec<u8>> = all.iter().map(|a| a.vertices.iter().map(|v| v.0 as u8).collect()).collect();
+        // The table of products once and for all: subgroups and their actions are looked up in it.
         let find = |image: &[u8]| elements.iter().position(|e| e == image).expect("closed under products") as u8;
         let product = elements
             .iter()
@@ -136,12 +139,15 @@ impl Symmetries {
 
     /// The elements that carry a subgroup to itself by conjugation.
     pub(crate) fn normalizer(&self, s: Subgroup) -> Vec<Vec<u8>> {
+        // These carry meshes with the symmetries `s` to meshes with the same symmetries: what the search may
+        // identify.
         (0..self.order()).filter(|&g| self.conjugate(s, g) == s).map(|g| self.elements[g].clone()).collect()
     }
 
     fn closure(&self, mut s: Subgroup) -> Subgroup {
         loop {
             let mut larger = s;
+            // Products until nothing is new: the groups have at most 64 elements, in one word.
             for a in members(s) {
                 for b in members(s) {
                     larger |= 1 << self.product[a][b];
@@ -228,6 +234,8 @@ impl Action {
             product.iter().map(|row: &Vec<u8>| row.iter().position(|&g| g == 0).unwrap_or(0)).collect();
         let reflects: Vec<bool> = elements.iter().map(|&g| symmetries.reflects[g]).collect();
         let n = symmetries.elements[0].len();
+        // Of order two and reflecting; without a fixed circle on the boundary it is the antipodal kind, which has no
+        // sides.
         let mirrors: Vec<Mirror> = (0..elements.len())
             .filter(|&g| reflects[g] && product[g][g] == 0)
             .filter_map(|g| halves(&symmetries.quads, &image[g][..n]).map(|sides| Mirror { element: g, sides }))
@@ -343,6 +351,7 @@ impl Action {
             let bit = 1 << (first + i);
             self.fixers[first + i] = 0;
             for g in 0..self.image.len() {
+                // The orbit is the set of cosets of the stabilizer, and the group acts on it from the left.
                 let coset = s.coset[usize::from(self.product[g][r])];
                 self.image[g][first + i] = first as u8 + coset;
                 let fixes = usize::from(coset) == i;

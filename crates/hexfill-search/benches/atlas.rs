@@ -47,7 +47,7 @@ fn atlas(c: &mut Criterion) {
         b.iter(|| Atlas::read_packed(include_bytes!("../data/default.hxatlas")));
     });
     // More fillings than the atlas has: inward flips look for the others.
-    let many = FillOptions { count: 1000, max_hexes: 60, max_cavities: 30_000, ..FillOptions::default() };
+    let many = FillOptions::default().with_count(1000).with_max_hexes(60).with_max_cavities(30_000);
     group.bench_function("30,000 cavities of inward flips", |b| {
         b.iter(|| fill_from_atlas(&surface, Atlas::embedded(), &many, &Context::default()));
     });

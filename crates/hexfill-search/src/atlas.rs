@@ -2,6 +2,8 @@
 //!
 //! A state costs a parent, a flip and the hash of its class. The hash only points: a filling is replayed and its
 //! boundary compared before it is handed out, so a clash of hashes costs time and never a wrong answer.
+//!
+//! Source: Verhetsel et al. 2019 (meshes of small cavities computed once and looked up); kept as flips, by class and blocked pairs, is ours.
 
 use crate::atlas_index::{AtlasIndex, HASH_BITS};
 use crate::atlas_states::AtlasStates;
@@ -218,6 +220,7 @@ impl Atlas {
                 named[state as usize] |= keep(usize::from(quads[state as usize]), self.hexes_of(state));
             }
         }
+        // A parent has a smaller number than its child, so one pass downward marks all that a kept state needs.
         for state in (0..self.n_states()).rev() {
             wanted[state] |= named[state] || state == 0;
             if wanted[state] {

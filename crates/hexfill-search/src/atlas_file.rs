@@ -4,6 +4,8 @@
 //! (parent `u32`, flip 2 bytes, class hash 5 bytes), xxh3-64 of all that. A level is written in one go and synced, so a
 //! killed growth loses the level in flight; a torn last record is cut off on resuming.
 //! All numbers little-endian. The *packed* form of an atlas is another file ([`crate::atlas_packed`]).
+//!
+//! Source: ours.
 
 use crate::atlas::{Atlas, short_hash};
 use crate::atlas_packed::PACKED_MAGIC;
@@ -112,6 +114,8 @@ impl GrowthLog {
             return Err(AtlasError::OtherOptions { path: path.to_owned(), given, wanted: growth.options() });
         }
         let mut at = HEADER_BYTES;
+        // Every flip is made again and judged legal again: a log that was edited is refused at the record it was
+        // edited in.
         while let Some((record, end)) = parse_record(&bytes, at, growth.level() + 1, path)? {
             let damaged = |what| AtlasError::Damaged { path: path.to_owned(), offset: at as u64, what };
             growth

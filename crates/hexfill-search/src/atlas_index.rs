@@ -3,6 +3,8 @@
 //! Short hashes are uniform in 40 bits, so their leading bits choose one of about `n / 4` buckets of a few entries each, and
 //! the other bits share an entry with the state: a look-up reads two places in memory. The table is made by one pass of counting; nothing is
 //! sorted. It lies in bytes, little-endian, as a file or the program itself holds it: nothing is read before a look-up.
+//!
+//! Source: ours.
 
 use crate::atlas_states::MOST_NARROW;
 use std::borrow::Cow;

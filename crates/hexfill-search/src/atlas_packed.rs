@@ -2,6 +2,8 @@
 //!
 //! Magic, xxh3-64 of the rest; five numbers (whether states are wide, bits of a bucket, levels, states, named states) and the first state of each
 //! level, 4 bytes each; the [words of the states](crate::atlas_states); the [index](crate::atlas_index): starts, entries. All numbers little-endian.
+//!
+//! Source: ours.
 
 use crate::atlas::Atlas;
 use crate::atlas_index::{AtlasIndex, HASH_BITS, Shape};

@@ -2,6 +2,8 @@
 //!
 //! Low bits first: 8 bits of the flip's dart, 3 of its kind, then the parent. A word has 4 bytes, or 8 if there are more states than the
 //! other 21 bits can number. Little-endian, so that a file or the program itself can hold the table as it is: nothing is unpacked before a look-up.
+//!
+//! Source: ours.
 
 use crate::flip::Flip;
 use std::borrow::Cow;

@@ -5,6 +5,8 @@
 //! So a known state completes the way if the pairs it blocks and the pairs the k hexes use are disjoint, under one of the
 //! automorphisms of the sphere where they meet. The growth of an atlas forgets most states of a class; this
 //! finds which of those it knows would have been better remembered.
+//!
+//! Source: ours.
 
 use crate::canonical::{Canonical, relabel};
 use crate::cavity::Cavity;
@@ -53,6 +55,8 @@ pub(crate) fn shorter_way(target: &Cavity, limit: u32, known: &Known, breadth: &
     let mut best: Option<(u32, u32, Inner)> = None;
     let mut fewest = limit;
     let mut seen = FxHashSet::default();
+    // Breadth first, a beam wide: the way back is short, since hexes glued near the end decide the boundary, and
+    // forward the known states do the rest.
     for depth in 1..=breadth.depth {
         let mut inside: Vec<Inner> = Vec::new();
         for (cavity, from) in &beam {
@@ -62,6 +66,8 @@ pub(crate) fn shorter_way(target: &Cavity, limit: u32, known: &Known, breadth: &
                 let class = class_hash(canonical.code());
                 let image = canonical.blocked_image(&cavity).0;
                 let key = (class, pack(&image, cavity.n_vertices()));
+                // The same sphere with the same blocked pairs, reached in another order: what is inside of it has the
+                // same number of hexes.
                 if !seen.insert(key) {
                     continue;
                 }
@@ -79,6 +85,7 @@ pub(crate) fn shorter_way(target: &Cavity, limit: u32, known: &Known, breadth: &
         if breadth.first && best.is_some() {
             break;
         }
+        // Ties by name and never by arrival: the beam must not depend on the order of the flips.
         inside.sort_unstable_by_key(|i| (i.score, i.key));
         inside.truncate(breadth.beam);
         beam.clear();

@@ -3,6 +3,8 @@
 //! An atlas stores a ball as the flips that lead from one cube to it, each named on the *canonical* cavity of the state
 //! before. Replaying keeps the true vertex numbers beside the canonical ones; a canonical cavity may be the mirror image
 //! of the true one, which is tracked so that every hex comes out positively oriented.
+//!
+//! Source: ours.
 
 use crate::canonical::{Canonical, decode};
 use crate::cavity::{Cavity, MAX_VERTICES};
@@ -61,6 +63,8 @@ impl Ball {
             for (v, &id) in ids.iter().enumerate() {
                 canonical_ids[usize::from(form.numbers[v])] = id;
             }
+            // The canonical cavity may show the ball's outside in a mirror; two mirrors cancel, and hexes glued
+            // behind one are turned.
             mirrored ^= form.mirrored;
             if usize::from(flip.dart) >= 4 * form.cavity.n_quads() {
                 return None;
@@ -107,6 +111,8 @@ impl Ball {
         if mine.code() != theirs.code() {
             return Vec::new();
         }
+        // One flag of the ball against all of the cavity: every isomorphism once, as automorphisms of the one are
+        // those of the other.
         let flag = mine.flags()[0];
         let numbers = Canonical::vertex_numbers(&self.boundary, flag);
         let mut found = Vec::new();

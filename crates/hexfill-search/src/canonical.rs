@@ -6,6 +6,8 @@
 //! entered. Only the flags of the rarest local kind are tried (any isomorphism-invariant choice will do), and a flag
 //! is given up at the first byte that exceeds the best code so far. Flags that reach the same best code differ by an
 //! automorphism of the class; among them the smallest image of the blocked pairs is the canonical one.
+//!
+//! Source: Brinkmann, McKay 2007 (codes of plane graphs); the image of the blocked pairs is ours.
 
 use crate::cavity::{Cavity, MAX_DARTS, MAX_QUADS, MAX_VERTICES, Pairs, next, turn};
 
@@ -173,6 +175,8 @@ impl Canonical {
         let mut reached = 1u8;
         let step = if flag.mirrored { 3u8 } else { 1 };
         for i in 0..n {
+            // The same walk as in `try_flag`, vertices numbered on the way. Kept apart: the code is computed for
+            // every flag of every child, the numbers for few.
             let mut d = entry[i];
             for _ in 0..4 {
                 let start = if flag.mirrored { next(d) } else { d };

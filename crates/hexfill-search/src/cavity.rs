@@ -6,6 +6,8 @@
 //! `blocked` is symmetric and disjoint from the edges and diagonals of the quads.
 //!
 //! Limit: [`MAX_QUADS`] quads, so that darts fit in a `u8` and rows of the pair table in a `u64`.
+//!
+//! Source: ours.
 
 use hexfill_mesh::{Dart, QuadSurface};
 

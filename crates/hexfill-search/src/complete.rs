@@ -3,6 +3,8 @@
 //! What a growth did not reach is searched [backward](crate::backward) from. The ways found join what is known, so later
 //! searches meet them. Targets are taken in batches that only read what is known: the result does not depend on the
 //! number of threads.
+//!
+//! Source: ours; that every class of a size is there is counted against Brinkmann et al. 2005.
 
 use crate::atlas::{Atlas, short_hash};
 use crate::backward::{Breadth, Way, shorter_way};
@@ -92,6 +94,8 @@ pub fn complete(
     let fewest = |known: &Known| targets.iter().map(|t| known.fewest(t.class)).collect::<Vec<Option<u32>>>();
     let before = fewest(&known);
     known.merge(&Known::from_atlas(kept)?)?;
+    // What the old atlas knew counts as known and not as found, and its classes keep at most the hexes they had: an
+    // atlas never gets worse.
     let with_kept = fewest(&known);
     let gained = before.iter().zip(&with_kept).filter(|(before, now)| before != now).count();
     let mut report = CompleteReport {

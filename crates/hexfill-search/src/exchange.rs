@@ -33,8 +33,8 @@ pub(crate) fn smaller_filling(
         Some(ball) => HexMesh::try_new(ball.n_vertices as usize, &ball.hexes).ok()?,
         None => any_filling(sphere, atlas, &ctx)?,
     };
-    let options = SimplifyOptions { max_quads: MAX_CAP, ..SimplifyOptions::default() };
-    let made = simplify(&mesh, atlas, &options.with_balls(balls).with_collapse(Collapse::Nothing), &ctx);
+    let options = SimplifyOptions::default().with_max_quads(MAX_CAP).with_balls(balls).with_collapse(Collapse::Nothing);
+    let made = simplify(&mesh, atlas, &options, &ctx);
     if made.report.after >= limit as usize {
         return None;
     }
@@ -42,7 +42,7 @@ pub(crate) fn smaller_filling(
 }
 
 fn any_filling(sphere: &Cavity, atlas: &Atlas, ctx: &Context<'_>) -> Option<HexMesh> {
-    let options = FillOptions { max_cavities: CAVITIES, ..FillOptions::default() };
+    let options = FillOptions::default().with_max_cavities(CAVITIES);
     let outcome = fill_from_atlas(&sphere.to_surface(), atlas, &options, ctx)?;
     outcome.fillings.into_iter().next().map(|filling| filling.mesh)
 }

@@ -13,6 +13,8 @@
 //! at least two vertices meet properly iff no pair of S is a body diagonal, a diagonal of a quad forces that whole quad,
 //! and otherwise S is one edge. So every edge of the new hex that the covered quads do not have, every diagonal of a
 //! quad that is not covered and every body diagonal must join a pair that nothing has used yet.
+//!
+//! Source: Bern, Eppstein and Erickson 2002; that pairs of vertices decide is ours (proof: `topology/star.rs` of `hexfill-check`).
 
 use crate::cavity::{Cavity, MAX_QUADS, MAX_VERTICES, Pairs, next, turn};
 use hexfill_mesh::cube::{BODY_DIAGONALS, EDGES, FACET_DIAGONALS, FACETS};
@@ -200,12 +202,16 @@ pub fn place(cavity: &Cavity, degrees: &[u8; MAX_VERTICES], flip: Flip) -> Optio
             }
         }
     }
+    // The cube is laid with its bottom on the dart's quad; the other covered facets are found from there through
+    // twins, in the order of the table.
     let mut facet_dart = [NEW; 6];
     facet_dart[BOTTOM] = d;
     for &(side, facet, touch) in &table.around {
         let under = turn(d, 4 - side);
         facet_dart[facet] = turn(twin[usize::from(under)], touch);
     }
+    // Every facet but the bottom was found on one way; where two of them share an edge on the cube, they have to
+    // share it here. (Degree 3 above is the same demand at buried corners.)
     for &(f, i, g, j) in &table.closing {
         let a = turn(facet_dart[f], 4 - i);
         let b = turn(facet_dart[g], 4 - j);
@@ -291,6 +297,8 @@ pub fn apply(cavity: &Cavity, placement: &Placement) -> (Cavity, [u8; MAX_VERTIC
     let quad_of = keep_quads(cavity, covered, &renamed, &mut after);
     add_open_facets(cavity, placement, &renamed, &quad_of, &mut after);
     keep_pairs(cavity, buried, &renamed, &mut after);
+    // What the hex uses and no longer shows: edges and diagonals between corners that are still on the outside,
+    // buried in it.
     for &[i, j] in &table.blocks {
         let a = renamed[usize::from(placement.corners[i])];
         let b = renamed[usize::from(placement.corners[j])];

@@ -10,6 +10,8 @@
 //!
 //! Determinism: the children of a level are gathered in sets whose content does not depend on their order of arrival,
 //! then numbered by class hash. Any number of threads gives the same atlas.
+//!
+//! Source: ours; gluing outward by flips is Verhetsel et al. 2019 turned round.
 
 use crate::ball::Ball;
 use crate::canonical::{Canonical, MAX_CODE, code_len, decode};
@@ -297,6 +299,7 @@ impl Growth {
     /// Adds a level that was grown before: each state's parent (on the newest level) and flip, in order.
     /// `None` if a flip is not legal on its parent; the growth is then unusable.
     pub(crate) fn replay_level(&mut self, parents: &[u32], flips: &[Flip]) -> Option<()> {
+        // Flips are replayed in parallel and states numbered one after the other: numbers are those of the log.
         let first = *self.level_starts.last().expect("level 1 exists");
         let remade: Option<Vec<(ClassHash, FrontierState, u16)>> = parents
             .par_iter()

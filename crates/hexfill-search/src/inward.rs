@@ -4,6 +4,8 @@
 //! those of a growing ball on the mirrored surface. The pairs that the glued hexes use become blocked, and the atlas
 //! filling of the rest must avoid them: then the whole obeys proper intersection, by the same pair table that makes a
 //! single flip legal.
+//!
+//! Source: Verhetsel et al. 2019 (flips from the boundary until the cavity is a known one); the beam and the blocked pairs are ours.
 
 use crate::atlas::Atlas;
 use crate::ball::mirror_image;
@@ -17,23 +19,63 @@ use rustc_hash::FxHashSet;
 use xxhash_rust::xxh3::xxh3_128;
 
 /// What to look for.
+///
+/// | option | default |
+/// |---|---|
+/// | hexes at most | 4096 |
+/// | count | 1 |
+/// | beam | 1000 |
+/// | cavities at most | 1,000,000 |
+/// | improve | no |
 #[derive(Clone, Copy, Debug)]
 pub struct FillOptions {
-    /// Most hexes a filling may have.
-    pub max_hexes: u32,
-    /// How many different fillings to look for.
-    pub count: usize,
-    /// How many cavities the beam keeps on each level.
-    pub beam: usize,
-    /// How many cavities to look at before giving up: a bound that does not depend on the clock.
-    pub max_cavities: u64,
-    /// Look on for smaller fillings after the first until the context stops the search or the beam is empty.
-    pub improve: bool,
+    max_hexes: u32,
+    count: usize,
+    beam: usize,
+    max_cavities: u64,
+    improve: bool,
 }
 
 impl Default for FillOptions {
     fn default() -> Self {
         Self { max_hexes: 4096, count: 1, beam: 1000, max_cavities: 1_000_000, improve: false }
+    }
+}
+
+impl FillOptions {
+    /// Most hexes a filling may have.
+    #[must_use]
+    pub fn with_max_hexes(self, max_hexes: u32) -> Self {
+        Self { max_hexes, ..self }
+    }
+
+    /// How many different fillings to look for.
+    #[must_use]
+    pub fn with_count(self, count: usize) -> Self {
+        Self { count, ..self }
+    }
+
+    /// How many cavities the beam keeps on each level.
+    #[must_use]
+    pub fn with_beam(self, beam: usize) -> Self {
+        Self { beam, ..self }
+    }
+
+    /// How many cavities to look at before giving up: a bound that does not depend on the clock.
+    #[must_use]
+    pub fn with_max_cavities(self, max_cavities: u64) -> Self {
+        Self { max_cavities, ..self }
+    }
+
+    /// Look on for smaller fillings after the first until the context stops the search or the beam is empty.
+    #[must_use]
+    pub fn with_improve(self, improve: bool) -> Self {
+        Self { improve, ..self }
+    }
+
+    /// How many cavities the beam keeps on each level.
+    pub fn beam(&self) -> usize {
+        self.beam
     }
 }
 
@@ -148,6 +190,8 @@ pub fn fill_avoiding(
 ) -> Option<FillOutcome> {
     let (mut cavity, ids) = Cavity::from_surface(surface)?;
     let pairs = cavity.surface_pairs();
+    // A pair that is an edge or a diagonal of the surface itself is in the pair table already, with the quad that
+    // both sides share: blocking it would forbid that quad.
     for pair in joined {
         if let [Ok(a), Ok(b)] = pair.map(|v| ids.binary_search(&v))
             && a != b
@@ -158,6 +202,7 @@ pub fn fill_avoiding(
     }
     let mut search = Search { atlas, options, trail: Vec::new(), found: Vec::new(), seen: FxHashSet::default() };
     let hole = Hole { cavity: mirror_image(&cavity), ids, n_vertices: surface.n_vertices() as u32, last: None };
+    // The surface itself may be in the atlas: no hex is glued then.
     search.close_with_atlas(&hole, 0);
     let mut outcome = FillOutcome { fillings: Vec::new(), cavities: 1, stop: StopReason::Finished };
     let mut beam = vec![hole];
@@ -262,6 +307,7 @@ impl Search<'_> {
             return (Vec::new(), 0, Some(stop));
         }
         let looked_at = children.len() as u64;
+        // A set for all depths: the same cavity deeper down costs more hexes, so it is never better.
         children.retain(|c| !self.seen.contains(&c.key));
         children.sort_unstable_by_key(|c| (c.score, c.key, c.parent, c.placement.corners));
         children.dedup_by_key(|c| c.key);
@@ -272,6 +318,8 @@ impl Search<'_> {
             let parent = &beam[child.parent as usize];
             let hole = parent.after(&child.placement, self.trail.len() as u32);
             self.trail.push(Glued { hex: parent.hex(&child.placement), before: parent.last });
+            // The hint is the fewest hexes of its class, blocked pairs left aside: a lower bound that saves the
+            // replay of fillings that are too large.
             if child.hint.is_some_and(|h| depth + h <= self.most_allowed()) {
                 self.close_with_atlas(&hole, depth);
                 if self.is_satisfied() {

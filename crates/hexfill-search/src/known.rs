@@ -1,6 +1,8 @@
 //! [`Known`]: the states of an atlas with their blocked pairs, by class, to which shorter ways are added.
 //!
 //! States are numbered as in the atlas; those added follow. The parent of a state always has one hex less.
+//!
+//! Source: ours.
 
 use crate::atlas::{Atlas, STEP, short_hash};
 use crate::ball::{Ball, canonical_cavity};

@@ -59,6 +59,6 @@ pub use flip::{Flip, FlipKind, Placement, apply, is_legal, legal_flips, place};
 pub use grow::{GrowOptions, Growth, LevelReport, MAX_CAP};
 pub use inward::{FillOptions, FillOutcome, Filling, fill_avoiding, fill_from_atlas};
 pub use simplify::{
-    Collapse, Gate, Simplified, SimplifyOptions, SimplifyReport, collapse, simplification_atlas, simplify,
-    simplify_gated, single_sheet_collapses,
+    Collapse, Gate, Simplified, SimplifyOptions, SimplifyReport, WithoutSheet, collapse, simplification_atlas,
+    simplify, simplify_gated, single_sheet_collapses,
 };

@@ -7,7 +7,7 @@ use hexfill_search::{Atlas, FillOptions, MAX_QUADS, fill_from_atlas};
 
 /// Fills with a small bound and judges what came out; returns the number of fillings.
 fn fill(surface: &QuadSurface, beam: usize, max_cavities: u64) -> usize {
-    let options = FillOptions { beam, max_cavities, ..FillOptions::default() };
+    let options = FillOptions::default().with_beam(beam).with_max_cavities(max_cavities);
     let outcome = fill_from_atlas(surface, Atlas::embedded(), &options, &Context::default()).unwrap();
     for filling in &outcome.fillings {
         let hexes: Vec<[u32; 8]> = filling.mesh.hexes().iter().map(|h| h.map(|v| v.0)).collect();

@@ -2,6 +2,8 @@
 //!
 //! A hex is happiest with right angles, so an edge of angle a wants a / 90 degrees of them. 1 is a crease of a box, 2 is
 //! flat, 3 is the inner edge of an L.
+//!
+//! Source: ours; the same wish stands in Reberol et al. 2023 (valences nearest to angle / 90 degrees).
 
 use hexfill_geometry::{cross, dot, sub};
 use hexfill_mesh::{Dart, QuadSurface};

@@ -5,6 +5,8 @@
 //! taken; the number of layers is their mean length in edges.
 //!
 //! Invariant: with one vertex of the outer component, level 0, every column has a new vertex on each level and one of the cavity on the last.
+//!
+//! Source: ours.
 
 use crate::front::{Front, NONE};
 use hexfill_geometry::{Vector, cone, dot, sub};
@@ -135,7 +137,7 @@ mod tests {
         let hollow = QuadSurface::try_new(all.len(), &quads).unwrap();
         let hexes = between(&hollow, &all).unwrap();
         let n_vertices = hexes.iter().flatten().max().unwrap() + 1;
-        let swept = Swept { n_vertices, hexes, front: Vec::new(), stopped: None };
+        let swept = Swept { n_vertices, hexes, plugs: 0, front: Vec::new(), stopped: None };
         assert!(judged(&hollow, &swept).is_multiple_of(96));
         assert!(between(&torus, &points).is_none());
     }

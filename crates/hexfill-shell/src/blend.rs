@@ -2,6 +2,8 @@
 //!
 //! The inside of every block is the transfinite interpolation of its facets, theirs that of their edges (Gordon, Hall 1973).
 //! Where the surface is a box that is exact; elsewhere it is a first guess for smoothing.
+//!
+//! Source: Gordon, Hall 1973 (transfinite interpolation).
 
 use hexfill_mesh::Context;
 use hexfill_mesh::cube::EDGES;
@@ -30,6 +32,7 @@ pub(crate) fn springs(
     let slot = |v: u32| vertices.binary_search(&v).expect("every vertex is on an edge");
     let mut neighbours: Vec<Vec<(usize, f64)>> = vec![Vec::new(); vertices.len()];
     for e in &edges {
+        // An edge that will be cut into many pieces may be long: springs in a row are as soft as they are many.
         let weight = 1.0 / f64::from(segments[e]);
         let [a, b] = e.map(slot);
         neighbours[a].push((b, weight));
@@ -40,6 +43,8 @@ pub(crate) fn springs(
     let centre: Point = std::array::from_fn(|k| known.iter().flatten().map(|p| p[k] / n_known).sum());
     let mut at: Vec<Point> = known.iter().map(|p| p.unwrap_or(centre)).collect();
     let free: Vec<usize> = (0..at.len()).filter(|&i| known[i].is_none()).collect();
+    // Gauss-Seidel in the order of ids: the coarse mesh is small, and a fixed number of sweeps gives the same bytes
+    // everywhere.
     for _ in 0..SWEEPS {
         let mut moved = 0.0f64;
         for &i in &free {

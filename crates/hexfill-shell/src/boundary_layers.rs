@@ -3,6 +3,8 @@
 //! A pillow is a sheet that ends nowhere on the surface, so it may be cut into any number of layers: the surface stays. Heights
 //! are measured along the pillow's own edges, from the surface inward; where an edge is too short for the heights asked for, they
 //! shrink there by one factor.
+//!
+//! Source: ours; a sheet cut into layers is plain refinement along a dual surface.
 
 use crate::blend::blend_block;
 use crate::compress::uncompressed;
@@ -60,7 +62,7 @@ pub struct CutLayers {
 }
 
 /// Cuts the layer of hexes under the surface; `points` are those of all vertices of the mesh. `None` if some hex there is not in a pillow, so that a cut
-/// would reach the surface.
+/// would reach the surface, or one sheet is all there is between two parts of the surface, so that it has no outer side.
 pub fn cut_boundary_layers(
     mesh: &HexMesh,
     surface: &QuadSurface,
@@ -75,6 +77,8 @@ pub fn cut_boundary_layers(
     let hexes = mesh.hexes_raw();
     let classes = parallel_classes(&hexes);
     let key = |a: u32, b: u32| [a.min(b), a.max(b)];
+    // A sheet is a class of parallel edges. Those that leave the surface are to be cut; if such a sheet had an edge
+    // on the surface, it would end there, and the cut would split quads of the surface.
     let mut is_cut = vec![false; classes.n];
     for f in mesh.boundary_facets() {
         let (hex, side) = (hexes[f.hex().index()], f.side());
@@ -90,6 +94,7 @@ pub fn cut_boundary_layers(
         }
     }
     let from_surface = inward(&hexes, &classes.of, &is_cut, n_surface)?;
+    // The lattice numbers points as lifting does, the surface's own first; here every quad is a grid of one.
     let wanted = vec![2.0; 4 * surface.n_quads()];
     let mut lattice = Lattice::new(&uncompressed(surface, &wanted), n_surface);
     let mut at: Vec<[f64; 3]> = points[..n_surface as usize].to_vec();
@@ -108,7 +113,7 @@ pub fn cut_boundary_layers(
             let [v, w] = e.map(|i| hex[i]);
             if is_cut[classes.of[&key(v, w)] as usize] {
                 // Outer end first.
-                let (v, w) = if from_surface[&key(v, w)] == v { (v, w) } else { (w, v) };
+                let (v, w) = if *from_surface.get(&key(v, w))? == v { (v, w) } else { (w, v) };
                 let (p, q) = (points[v as usize], points[w as usize]);
                 let length = norm(sub(q, p));
                 for (i, share) in layers.cuts(length).into_iter().enumerate() {
@@ -133,7 +138,7 @@ pub fn cut_boundary_layers(
 }
 
 /// The outer end of every edge that is cut: the one on the surface, and for edges without one the end that corresponds to it.
-/// `None` if the two sides of a sheet cannot be told apart.
+/// `None` if the two sides of a sheet contradict each other; a sheet with both sides on the surface has no entries.
 fn inward(
     hexes: &[[u32; 8]],
     classes: &FxHashMap<[u32; 2], u32>,
@@ -150,6 +155,8 @@ fn inward(
             [i, hexfill_mesh::cube::corner_at(p[0], p[1], p[2])]
         })
     };
+    // From the surface through the sheet, hex by hex: parallel edges of one hex point the same way. A sheet that
+    // meets itself turned round contradicts itself somewhere and is found by that.
     loop {
         let before = outer.len();
         for hex in hexes {
@@ -190,7 +197,7 @@ mod tests {
     /// A 2 x 2 x 2 box with its corner points, filled behind one pillow.
     fn pillowed_box() -> (QuadSurface, HexMesh, Vec<[f64; 3]>) {
         let surface = voxel_surface([2, 2, 2], |_| true).unwrap();
-        let options = ShellOptions { pillows: vec![1], ..ShellOptions::default() };
+        let options = ShellOptions::default().with_pillows(vec![1]);
         let mesh = shell(&surface, None, &options, &Context::default()).meshes.remove(0).mesh;
         let points = (0..mesh.n_vertices()).map(|v| [v as f64, (v * v % 7) as f64, (v % 3) as f64]).collect();
         (surface, mesh, points)
@@ -225,9 +232,22 @@ mod tests {
     }
 
     #[test]
+    fn a_sheet_between_two_surfaces_has_no_outer_side() {
+        // A cube within a cube, joined by six hexes: every edge across has both ends on the surface.
+        let hexes: Vec<[u32; 8]> = hexfill_mesh::cube::FACETS
+            .map(|f| f.map(|v| v as u32))
+            .map(|[a, b, c, d]| [a + 8, b + 8, c + 8, d + 8, a, b, c, d])
+            .to_vec();
+        let mesh = HexMesh::try_new(16, &hexes).unwrap();
+        let surface = QuadSurface::try_new(16, &mesh.boundary_quads_raw()).unwrap();
+        let layers = BoundaryLayers { count: 3, height: None, growth: 1.0 };
+        assert!(cut_boundary_layers(&mesh, &surface, &[[0.0; 3]; 16], &layers).is_none());
+    }
+
+    #[test]
     fn without_a_pillow_nothing_is_cut() {
         let surface = voxel_surface([2, 2, 2], |_| true).unwrap();
-        let options = ShellOptions { pillows: vec![0], ..ShellOptions::default() };
+        let options = ShellOptions::default().with_pillows(vec![0]);
         let mesh = shell(&surface, None, &options, &Context::default()).meshes.remove(0).mesh;
         let points = vec![[0.0; 3]; mesh.n_vertices()];
         let layers = BoundaryLayers { count: 2, height: None, growth: 1.0 };

@@ -5,6 +5,8 @@
 //! so that the column twists least, and k is its length in edges (any k keeps the parity of the front).
 //!
 //! Invariant: the column lies inside the surface as far as samples of its axis tell.
+//!
+//! Source: ours.
 
 use crate::front::Front;
 use crate::inside::winding_number;
@@ -161,7 +163,13 @@ mod tests {
         assert!(!made.meshes.is_empty());
         for shelled in made.meshes {
             let hexes = shelled.mesh.hexes_raw();
-            let swept = Swept { n_vertices: shelled.mesh.n_vertices() as u32, hexes, front: Vec::new(), stopped: None };
+            let swept = Swept {
+                n_vertices: shelled.mesh.n_vertices() as u32,
+                hexes,
+                plugs: 0,
+                front: Vec::new(),
+                stopped: None,
+            };
             println!("{} hexes, {} pillows", judged(&surface, &swept), shelled.pillows);
         }
     }

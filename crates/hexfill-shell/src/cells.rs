@@ -3,6 +3,8 @@
 //! Invariant: `at[v]` holds the hexes at vertex v, ascending; facets are glued by their vertices, so no neighbour table has to follow
 //! the changes. A set of hexes whose surface is a sphere is *shrunk* (a local pillow; Mitchell, Tautges 1995): its surface vertices are copied, its hexes take the copies, and one new hex fills the gap over each of its facets, those
 //! on the mesh's boundary included. The mesh's boundary stays as it is, and cells that met properly still do.
+//!
+//! Source: Mitchell, Tautges 1995 (pillows round any set of hexes); taking sheets out: Borden et al. 2002.
 
 use hexfill_mesh::cube::{CORNER_NEIGHBOURS, FACETS};
 use hexfill_mesh::{HexMesh, HexMeshError, QuadSurface};

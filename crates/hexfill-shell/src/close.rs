@@ -2,6 +2,8 @@
 //!
 //! What is behind the front blocks pairs of its vertices: the filling must avoid them, so that the whole is proper. The atlas knows several
 //! fillings of many spheres. Where none fits, or blocked pairs cost too much, a pillow goes first: behind it nothing is blocked.
+//!
+//! Source: Verhetsel et al. 2019 (a cavity is looked up among known meshes); fillings that avoid what is there already are ours.
 
 use crate::front::Front;
 use hexfill_mesh::{Context, QuadSurface};
@@ -42,7 +44,7 @@ impl Front {
             return None;
         }
         let surface = QuadSurface::try_new(self.n_vertices() as usize, &self.quads()).ok()?;
-        let options = FillOptions { max_cavities, beam: BEAM, ..FillOptions::default() };
+        let options = FillOptions::default().with_max_cavities(max_cavities).with_beam(BEAM);
         let quiet = Context { progress: None, ..*ctx };
         let outcome = fill_avoiding(&surface, &self.joined_pairs(), atlas, &options, &quiet)?;
         let filling = &outcome.fillings.first()?.mesh;

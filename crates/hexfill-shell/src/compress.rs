@@ -6,6 +6,8 @@
 //! their angles, and so does every rail without which the coarse surface would not be proper.
 //! On surfaces that are not spheres rails go in pairs: then every loop crosses as many chords as before, mod 2, and what
 //! could be filled still can (Erickson 2014).
+//!
+//! Source: ours; that pairs of chords may go on any surface follows from Erickson 2014, section 4.
 
 use crate::angles::FLAT;
 use hexfill_mesh::{Dart, QuadSurface, VertexId, is_proper};
@@ -114,6 +116,7 @@ impl Rails {
             let mut curve = vec![first];
             let mut d = first;
             let closed = loop {
+                // A rail ends at a singular vertex: taking out a part of it would leave a chord that ends inside.
                 if surface.degree(surface.target(d)) != 4 {
                     break false;
                 }

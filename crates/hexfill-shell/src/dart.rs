@@ -1,4 +1,6 @@
 //! Darts as numbers: `4 * quad + side`, the sides of a quad counter-clockwise seen from outside.
+//!
+//! Source: ours; darts are what others call half-edges.
 
 /// The dart after `d` round its quad.
 #[inline]

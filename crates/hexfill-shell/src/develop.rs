@@ -8,6 +8,8 @@
 //! Components are developed one by one; a cavity is placed by the affine map that takes the outer component's development nearest to its positions.
 //!
 //! Invariant: neighbouring vertices lie one step apart, and quads face outward of the solid as those of the surface do.
+//!
+//! Source: ours, after Tarini et al. 2004.
 
 use hexfill_geometry::{cone, det};
 use hexfill_mesh::{Dart, QuadSurface};
@@ -132,6 +134,8 @@ impl Development {
             all
         };
         let outer = vertices(outer);
+        // Unrolled alone, a cavity lies anywhere and turned in one of 24 ways. The outer component's own map tells
+        // where it belongs, nearly; whole numbers make it exact, and the polycube refuses what came out wrong.
         let to_grid = Affine::fit(outer.iter().map(|&v| (points[v], self.at[v].map(f64::from))))?;
         for quads in inner {
             let vertices = vertices(quads);

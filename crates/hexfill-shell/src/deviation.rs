@@ -1,4 +1,6 @@
 //! How far a mesh is from the hexes its edges want: the number that ranks meshes before anything is embedded.
+//!
+//! Source: ours.
 
 use crate::compress::Coarse;
 use crate::lift::segments;

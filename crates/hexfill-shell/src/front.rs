@@ -8,6 +8,8 @@
 //! quads or none; no vertex has degree 1 or 2; two front edges never join the same two vertices; the pair table is that of the surface's quads
 //! and the glued hexes, without a clash (rule R2); `star[v]` lists the hexes at `v`.
 //! Every change is written to the journal, so that [`Front::take_back`] restores the state exactly.
+//!
+//! Source: ours; one hex at a time on a front is Bern, Eppstein and Erickson 2002 read as a filling.
 
 mod check;
 mod journal;

@@ -8,6 +8,8 @@
 //!
 //! (Bern, Eppstein, Erickson, "Flipping cubical meshes", 2002.) Together with the flips of `zip`, whose checks and zips they share, they are all ways
 //! to glue a hex on a disk of quads. A hex edge that joins two old vertices which are joined already is a double edge, unless a zip glues the two.
+//!
+//! Source: Bern, Eppstein and Erickson 2002 (the flips of a cube).
 
 use crate::dart::turn;
 use crate::front::{Front, NONE};

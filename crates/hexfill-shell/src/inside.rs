@@ -1,4 +1,6 @@
 //! Inside or outside of the surface, of points and of fans.
+//!
+//! Source: van Oosterom, Strackee 1983 (winding numbers).
 
 use hexfill_geometry::{Vector, add, add_scaled, halves, midpoint, sub};
 

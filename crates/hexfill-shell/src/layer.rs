@@ -7,7 +7,9 @@
 //! mirror images across the rungs, the same hexes close the void. On surfaces that are not spheres a set of rings whose
 //! union separates takes the place of one.
 //!
-//! The cost of a move is how far the edges it completes are from the hexes they want (`shelling.md`, section 3).
+//! The cost of a move is how far the edges it completes are from the hexes they want (book, page `shelling`, "Layers and closings").
+//!
+//! Source: Müller-Hannemann 2001 (dual cycles eliminated one after the other); the cost by angles and the closings are ours.
 
 use crate::dart::{next, opposite, prev};
 use crate::pairs::Join;
@@ -188,6 +190,8 @@ pub(crate) fn consider(void: &Void, places: &mut Places, rings: Vec<Ring>) -> Ve
 /// too large.
 fn side_of(void: &Void, places: &mut Places, rings: &[Ring]) -> Option<Vec<u32>> {
     let n = void.quads.len();
+    // Of two sides the smaller one is enough on large surfaces, where a flood over half of the front for each ring
+    // would be quadratic.
     let most = if n > LARGE { n / 2 } else { n };
     places.begin(n);
     for &d in rings.iter().flatten() {
@@ -222,6 +226,8 @@ fn side_of(void: &Void, places: &mut Places, rings: &[Ring]) -> Option<Vec<u32>>
         }
         at += 1;
     }
+    // The flood came round to the left of a ring: the rings together do not separate, and a layer would have no other
+    // side to be contracted to.
     if rings.iter().flatten().any(|&d| places.get(void.twin[prev(d) as usize] >> 2) != Place::Elsewhere) {
         return None;
     }

@@ -8,6 +8,8 @@
 //! In a *minimal* lens (no lens inside) every other chord runs from one arc to the other, so that the faces along an arc are distinct and neither
 //! arc is longer than the number of vertices inside. Hence looking `limit` quads far from every corner finds every minimal lens of at most
 //! `limit` vertices. Minimal lenses have a triangle at an arc (Steinitz' lemma; Chang, Erickson, "Untangling planar curves", 2017).
+//!
+//! Source: Chang, Erickson 2017 (minimal bigons and Steinitz' lemma on their triangles); the bound on where to look is ours.
 
 use crate::dart::{next, opposite, prev};
 use crate::front::Front;
@@ -129,6 +131,8 @@ impl LensFinder {
 
     /// Collects the vertices inside the first `i` and `j` steps of the arcs; whether they are a disk of at most `limit` vertices.
     fn flood(&mut self, front: &Front, d: u32, i: usize, j: usize, limit: usize) -> bool {
+        // Marks with a time stamp: to clear them is to raise it, so a small lens costs its size and not that of the
+        // front.
         self.wall.clear(4 * front.n_slots() as usize);
         for &e in self.arcs[0][..i].iter().chain(&self.arcs[1][..j]) {
             self.wall.set(e, 0);

@@ -3,6 +3,8 @@
 //! Each sheet of the coarse mesh takes the multiplicity of the chords it ends in; one without an end takes 1. A hex whose
 //! three sheets have multiplicities a, b, c is cut into a x b x c. Points on the surface are the fine surface's own, known
 //! from the compression, so nothing is left to be matched afterwards.
+//!
+//! Source: ours; that sheets end in chords is Thurston 1993, Mitchell 1996.
 
 use crate::blend::{blend_block, springs};
 use crate::compress::Coarse;
@@ -53,6 +55,8 @@ fn cut(
     let (mut fine, mut before) = (Vec::new(), Vec::with_capacity(hexes.len() + 1));
     let mut guess = corners.as_ref().map(|(points, _)| points.to_vec());
     for hex in hexes {
+        // Twelve edges, three sizes: parallel edges are in one sheet and have one length, which the caller has made
+        // sure of.
         let sizes = AXES.map(|[i, j]| segments[&pair(hex[i], hex[j])]);
         let [a, b, c] = sizes.map(|s| s as usize);
         before.push(fine.len());
@@ -291,6 +295,7 @@ impl Lattice {
             let axis = (0..3).find(|&k| POSITIONS[i][k] != POSITIONS[j][k]).expect("an edge has a direction");
             let n = sizes[axis];
             let (from, to) = if hex[i] < hex[j] { (i, j) } else { (j, i) };
+            // Whoever comes first makes the points; the others find them in the order from the smaller vertex on.
             let ids = self.edge.entry(pair(hex[i], hex[j])).or_insert_with(|| (1..n).map(|_| fresh()).collect());
             for s in 1..n {
                 let mut p = scaled(from);
@@ -308,6 +313,8 @@ impl Lattice {
             if nx < 2 || ny < 2 {
                 continue;
             }
+            // A quad is seen by its two hexes from either side and from any corner: its inner points are kept in a
+            // frame that its vertices alone fix.
             let frame = frame(facet.map(|i| hex[i]));
             let n_inner = (nx as usize - 1) * (ny as usize - 1);
             let ids = self.quad.entry(frame.key).or_insert_with(|| (0..n_inner).map(|_| fresh()).collect());

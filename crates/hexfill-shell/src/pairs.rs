@@ -1,9 +1,11 @@
 //! [`PairTable`]: how two vertices are joined by what is already there, which decides rule R2 in constant time a hex.
 //!
 //! Two cells (hexes, or quads of the surface) meet properly iff every pair of vertices that both hold is an edge of both, or a
-//! diagonal of one quad that both hold; a body diagonal belongs to one hex only. (`theory.md`, section 2.) So each pair has one
+//! diagonal of one quad that both hold; a body diagonal belongs to one hex only. (Proof: `topology/star.rs` of `hexfill-check`.) So each pair has one
 //! kind, and a diagonal names its quad by the quad's other two corners.
 //! Invariant: `count` is the number of cells that hold the pair, at most 2 for a diagonal and 1 for a body diagonal.
+//!
+//! Source: ours; the lemma is proved on the page of `topology/star.rs` in `hexfill-check`.
 
 use hexfill_mesh::cube::{BODY_DIAGONALS, EDGES, FACET_DIAGONALS};
 use rustc_hash::FxHashMap;

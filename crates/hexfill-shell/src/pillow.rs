@@ -1,4 +1,6 @@
 //! [`pillow`]: one sheet more, round some hexes of a mesh.
+//!
+//! Source: Mitchell, Tautges 1995.
 
 use crate::cells::{Cells, is_sphere};
 

@@ -8,6 +8,8 @@
 //! The slice joins the strands that crossed the ring in pairs, by the chords of the quadrangulation. Strands joined badly make chords that cross
 //! themselves, which no flip can undo; so among all rings and quadrangulations that plug is taken that leaves the fewest self-crossings (measured
 //! essential), then the fewest hexes.
+//!
+//! Source: ours.
 
 use crate::dart::{next, opposite, prev};
 use crate::front::{Front, NONE};
@@ -83,6 +85,8 @@ impl Quadrangulation {
                 continue;
             }
             let j = (i + 1) % self.n_corners;
+            // Straight through quad after quad from the rim to the rim; a disk has no other curve ends, so two sides
+            // of the polygon are named at a time.
             let mut s = sides[&(i.min(j), i.max(j))][0];
             loop {
                 of_quad[s / 4][s % 2] = n;
@@ -191,6 +195,8 @@ impl Strands {
         }
         let mut of = vec![[NONE; 2]; front.n_slots() as usize];
         let mut at_ring = vec![[NONE; 2]; ring.0.len()];
+        // First the strands that end at the ring: the slice will join them in pairs. What is not met by these is
+        // closed already and crosses itself or not, whatever the slice is.
         let mut n = 0;
         for (i, &d) in ring.0.iter().enumerate() {
             for (side, rim) in [next(d), prev(d)].into_iter().enumerate() {
@@ -225,6 +231,8 @@ impl Strands {
         let mut pairs: Vec<[u32; 2]> = front.slots().filter(|&q| !is_ring(q)).map(|q| of[q as usize]).collect();
         pairs.iter_mut().for_each(|p| p.sort_unstable());
         pairs.sort_unstable();
+        // Crossings by pair of strands: when the slice joins two strands, crossings of the one with the other become
+        // self-crossings, which are all that counts.
         let crossings = pairs.chunk_by(|a, b| a == b).map(|run| (run[0], run.len() as u32)).collect();
         Self { crossings, at_ring, n }
     }

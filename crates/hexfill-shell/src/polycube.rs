@@ -5,6 +5,8 @@
 //!
 //! Invariant: two cells share a facet unless a quad of the surface lies between them, and corners are one vertex iff shared facets join them. So
 //! parts of a bent surface that only *touch* in the grid stay apart; a surface whose parts overlap there is refused.
+//!
+//! Source: ours, after Tarini et al. 2004.
 
 use crate::develop::{Development, Site};
 use crate::front::{Front, NONE};
@@ -75,6 +77,8 @@ impl Cells {
     }
 
     fn hexes(&self, surface: &QuadSurface, development: &Development) -> Option<Vec<[u32; 8]>> {
+        // Cells are joined through facets, never by where they lie: parts that only touch in the grid must not share
+        // corners.
         let mut corners = Corners((0..8 * self.sites.len() as u32).collect());
         for cell in 0..self.sites.len() {
             for facet in 0..6 {
@@ -82,6 +86,7 @@ impl Cells {
                     continue;
                 }
                 let other = self.beside(cell, facet)?;
+                // A wall seen from one side only: the surface overlaps itself in the grid.
                 if self.walls[other as usize][facet ^ 1] != NONE {
                     return None;
                 }
@@ -105,6 +110,8 @@ impl Cells {
                     let [x, y, z] = p.map(|x| x as u8);
                     let root = corners.root(8 * cell as u32 + corner_at(x, y, z) as u32);
                     let slot = &mut root_of[v.index()];
+                    // One to one, both ways: a corner with two vertices, or a vertex at two corners, means that the
+                    // parts touch or overlap.
                     if *slot == NONE && name[root as usize] == NONE {
                         (*slot, name[root as usize]) = (root, v.0);
                     }
@@ -173,7 +180,7 @@ mod tests {
         let wanted = wanted_hexes(&surface, Some(&points));
         let hexes = polycube(&surface, &develop(&surface, &wanted, Some(&points)).unwrap()).unwrap();
         let n_vertices = hexes.iter().flatten().max().unwrap() + 1;
-        let swept = Swept { n_vertices, hexes, front: Vec::new(), stopped: None };
+        let swept = Swept { n_vertices, hexes, plugs: 0, front: Vec::new(), stopped: None };
         Some(judged(&surface, &swept))
     }
 

@@ -1,4 +1,6 @@
 //! The engine: meshes of a surface by layers, by flips, and by flips where layers get no further.
+//!
+//! Source: ours: which engine, in which order, and what is kept.
 
 use crate::angles::wanted_hexes;
 use crate::between::between;
@@ -9,6 +11,7 @@ use crate::front::Front;
 use crate::lift::{CoarseMesh, lift};
 use crate::polycube::polycube;
 use crate::solve::solve;
+use crate::stage::Stage;
 use crate::stir::stir_front;
 use crate::sweep::sweep_front;
 use crate::sweep_options::SweepOptions;
@@ -19,22 +22,64 @@ use rayon::prelude::*;
 use std::sync::Arc;
 
 /// What to try.
+///
+/// | option | default |
+/// |---|---|
+/// | restarts, seeds | 64, 4 |
+/// | pillows | 0 and 1 |
+/// | candidates | 3 |
 #[derive(Clone, Debug)]
-#[non_exhaustive]
 pub struct ShellOptions {
-    /// Restarts of the solver by layers, for each number of pillows.
-    pub restarts: u64,
-    /// Seeds of the sweep by flips, for each number of pillows.
-    pub seeds: u64,
-    /// Numbers of pillows to try.
-    pub pillows: Vec<u32>,
-    /// Most meshes returned for each number of pillows.
-    pub candidates: usize,
+    restarts: u64,
+    seeds: u64,
+    pillows: Vec<u32>,
+    candidates: usize,
 }
 
 impl Default for ShellOptions {
     fn default() -> Self {
         Self { restarts: 64, seeds: 4, pillows: vec![0, 1], candidates: 3 }
+    }
+}
+
+impl ShellOptions {
+    /// Restarts of the solver by layers, for each number of pillows.
+    #[must_use]
+    pub fn with_restarts(self, restarts: u64) -> Self {
+        Self { restarts, ..self }
+    }
+
+    /// Seeds of the sweep by flips, for each number of pillows.
+    #[must_use]
+    pub fn with_seeds(self, seeds: u64) -> Self {
+        Self { seeds, ..self }
+    }
+
+    /// Numbers of pillows to try, one after the other.
+    #[must_use]
+    pub fn with_pillows(self, pillows: Vec<u32>) -> Self {
+        Self { pillows, ..self }
+    }
+
+    /// Most meshes returned for each number of pillows.
+    #[must_use]
+    pub fn with_candidates(self, candidates: usize) -> Self {
+        Self { candidates, ..self }
+    }
+
+    /// Restarts of the solver by layers.
+    pub fn restarts(&self) -> u64 {
+        self.restarts
+    }
+
+    /// Seeds of the sweep by flips.
+    pub fn seeds(&self) -> u64 {
+        self.seeds
+    }
+
+    /// Most meshes for each number of pillows.
+    pub fn candidates(&self) -> usize {
+        self.candidates
     }
 }
 
@@ -50,7 +95,7 @@ pub struct Shelled {
     /// Pillows under the surface.
     pub pillows: u32,
     /// Where its hexes come from, and how many.
-    pub stages: Vec<(&'static str, usize)>,
+    pub stages: Vec<(Stage, usize)>,
     /// The smaller mesh it was lifted from, if chords were compressed and positions are known.
     pub coarse: Option<CoarseMesh>,
 }
@@ -121,7 +166,7 @@ pub fn shell(
     let mut keeper = Keeper { surface, points, shared, coarse: &coarse, fine: &fine, options, shelling };
     for &pillows in &options.pillows {
         if let (0, Some(hexes)) = (pillows, &cells) {
-            keeper.keep(&fine, 0, vec![Glued::at_once("grid", hexes.clone())], ctx);
+            keeper.keep(&fine, 0, vec![Glued::at_once(Stage::Grid, hexes.clone())], ctx);
             keeper.shelling.left = 0;
             if keeper.shelling.meshes.iter().any(|m| m.cost < PERFECT) {
                 // All edges bend by right angles: nothing is better than the cells of the grid.
@@ -180,7 +225,7 @@ impl Keeper<'_> {
         if pillows == 0
             && let Some(hexes) = between(self.surface, given)
         {
-            self.keep(self.fine, 0, vec![Glued::at_once("columns", hexes)], ctx);
+            self.keep(self.fine, 0, vec![Glued::at_once(Stage::Columns, hexes)], ctx);
             self.shelling.left = 0;
         }
         self.sweep_cut_open(given, pillows, ctx);
@@ -251,11 +296,11 @@ type Hexes = Vec<[u32; 8]>;
 /// Coarse hexes in the order they were glued, and how many there were after each stage.
 struct Glued {
     hexes: Hexes,
-    stages: Vec<(&'static str, usize)>,
+    stages: Vec<(Stage, usize)>,
 }
 
 impl Glued {
-    fn at_once(stage: &'static str, hexes: Hexes) -> Self {
+    fn at_once(stage: Stage, hexes: Hexes) -> Self {
         Self { stages: vec![(stage, hexes.len())], hexes }
     }
 }
@@ -375,11 +420,11 @@ impl<'a> Start<'a> {
     /// A complete mesh, given how many hexes there were after layers and after flips.
     fn glued(&self, hexes: Hexes, after_layers: usize, after_flips: usize) -> Glued {
         let stages = vec![
-            ("pillows", self.n_pillows),
-            ("plugs", self.void.hexes.len()),
-            ("layers", after_layers),
-            ("flips", after_flips),
-            ("residual", hexes.len()),
+            (Stage::Pillows, self.n_pillows),
+            (Stage::Plugs, self.void.hexes.len()),
+            (Stage::Layers, after_layers),
+            (Stage::Flips, after_flips),
+            (Stage::Residual, hexes.len()),
         ];
         Glued { hexes, stages }
     }

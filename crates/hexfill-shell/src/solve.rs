@@ -3,6 +3,8 @@
 //! One sweep takes the legal move of least cost until the void is closed or no move is legal. Restarts multiply every cost
 //! by a random factor; what comes out is ranked by (cost, hexes after lifting, number of the restart), so the result does
 //! not depend on the number of threads.
+//!
+//! Source: ours on top of Müller-Hannemann 2001, who takes the cycles in one order; noise and restarts are ours.
 
 use crate::dart::{next, prev};
 use crate::layer::{Move, Places, Ring, consider, make, rings};
@@ -148,6 +150,9 @@ fn patch_sets(void: &Void, rings: &[Ring]) -> Vec<Vec<usize>> {
                     continue;
                 }
                 debug_assert_eq!(next(prev(t)), t);
+                // Across a crease the patch ends. Where the quad beyond belongs to a ring that runs along the crease,
+                // that ring can take the patch up as its side; if any part of the boundary has none, the patch is not
+                // a candidate.
                 let ring = ring_of[prev(t) as usize];
                 match &mut set {
                     Some(set) if ring != usize::MAX => set.push(ring),

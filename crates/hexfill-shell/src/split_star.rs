@@ -11,9 +11,10 @@
 //! what positions allow, not what they will be.
 //! Where the hexes at v do not lie one a quad round one edge (meshes of the construction), all hexes at v may be shrunk first, which puts
 //! such a layer there; where stars without any valid placement are left, a layer under the whole surface may help.
-//! Related: N. Reberol et al., *Robust topological construction of all-hexahedral boundary layer meshes*, 2023.
 //!
 //! Invariant: boundary quads and the ids of their vertices never change; new vertices follow the old ones.
+//!
+//! Source: ours; Reberol et al. 2023 solve the same need by integer programs over the fans of all vertices.
 
 mod choose;
 #[cfg(test)]
@@ -102,6 +103,7 @@ pub fn split_stars(
         return None;
     }
     let chooser = Chooser::new(&surface, points, *options);
+    // Asked of the surface and not of the mesh: no layer of one hex a quad serves these, whatever lies behind.
     let poor = chooser.vertices_no_direction_serves();
     let behind_layer = || {
         let mut cells = Cells::new(mesh);
@@ -140,6 +142,8 @@ fn split_all(chooser: &Chooser<'_>, cells: &mut Cells, poor: &[u32], context: &C
     let mut splits = Vec::new();
     for _ in 0..PASSES {
         let mut open = chooser.still_poor(cells, poor);
+        // Worst first, since a split takes room from its neighbours and the worst have least to spare; ties by id, so
+        // that the order is fixed.
         open.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
         let before = splits.len();
         for (v, _) in open {

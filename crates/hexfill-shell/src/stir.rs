@@ -5,6 +5,8 @@
 //! that do not. And new crossings (2->4) may let two loops cancel. So flips are tried everywhere, alone and in pairs close to each other; each is followed by
 //! emptying the lenses it brought, and kept if quads + self-crossings become fewer. Where none helps, some are made at random, and it starts again;
 //! after half of the rounds behind a pillow.
+//!
+//! Source: ours; measured in `record/self-crossing-2026-11-22.md`.
 
 use crate::dart::opposite;
 use crate::front::{Front, Mark, NONE};
@@ -121,6 +123,7 @@ fn kick(front: &mut Front, random: &mut Random) {
     let mut kicks = KICKS;
     for _ in 0..1000 {
         let d = random.below(4 * front.n_slots() as usize) as u32;
+        // A new crossing or a saddle: flips that take quads away are the sweep's own.
         let patch = if random.below(2) == 0 { Patch::Pair } else { Patch::Strip };
         kicks -= usize::from(make(front, (d, Some(patch))));
         if kicks == 0 {
@@ -146,6 +149,8 @@ fn descend(
         random.shuffle(&mut moves);
         let small = front.n_quads() <= SMALL;
         let mut search = Search { now: energy(front), sweeper: Sweeper::new(front, options) };
+        // Tens of thousands of moves are tried, so each is followed by small lenses alone; the whole sweep comes when
+        // one was kept.
         search.sweeper.narrow(LENS);
         let found = match search.one(&moves, small, ctx) {
             Ok(false) if small => search.two(&moves, ctx),
@@ -208,6 +213,8 @@ impl Search<'_> {
             if !make(self.sweeper.front, first) {
                 continue;
             }
+            // Only where the first flip changed something: two flips far apart would each have to help alone, and
+            // those were tried.
             for second in moves_at(near(self.sweeper.front, start).into_iter()) {
                 let mark = self.sweeper.front.mark();
                 if !make(self.sweeper.front, second) {

@@ -3,6 +3,8 @@
 //! First come whole layers (pillows) if asked for, then the plugs of handles, then the sweep itself (see `sweeper`), then what is done about
 //! chords that cross themselves (see `stir`),
 //! and at last the atlas. On spheres whose chords are simple the sweep alone closes the void.
+//!
+//! Source: Folwell, Mitchell 1999 (curves contracted until the void is closed); plugs, stirring and the atlas at the end are ours.
 
 use crate::front::{Front, NONE};
 use crate::stir::stir_front;
@@ -24,6 +26,8 @@ pub struct Swept {
     pub n_vertices: u32,
     /// The hexes, corners in VTK_HEXAHEDRON order, positively oriented with respect to the outward surface.
     pub hexes: Vec<[u32; 8]>,
+    /// How many of the hexes plug handles; they come right after the pillows.
+    pub plugs: usize,
     /// The quads still to fill, oriented as the surface (outward of what is left); empty when complete.
     pub front: Vec<[u32; 4]>,
     /// Why the sweep stopped early, if it did.
@@ -62,7 +66,7 @@ pub fn sweep(
         .then(|| Front::new(surface));
     let Some(Ok(mut front)) = start else {
         let front = surface.quads_raw();
-        return Swept { n_vertices: surface.n_vertices() as u32, hexes: Vec::new(), front, stopped: None };
+        return Swept { n_vertices: surface.n_vertices() as u32, hexes: Vec::new(), plugs: 0, front, stopped: None };
     };
     let mut base: Vec<u32> = (0..surface.n_vertices() as u32).collect();
     let mut points: Option<Vec<[f64; 3]>> = points.map(<[_]>::to_vec);
@@ -74,6 +78,7 @@ pub fn sweep(
             points.extend(below.iter().map(|&v| points[v as usize]).collect::<Vec<_>>());
         }
     }
+    let n_pillows = front.hexes().len();
     if let Some(points) = &mut points {
         for handle in 0..surface.genus() {
             let Some(plugged) = ctx.stop().is_none().then(|| front.plug(points)).flatten() else { break };
@@ -81,6 +86,7 @@ pub fn sweep(
             ctx.report("shelling", handle + 1, Some(surface.genus()), || "handles cut".to_owned());
         }
     }
+    let plugs = front.hexes().len() - n_pillows;
     if let Some(want) = options.edge_want {
         front.set_wants(|a, b| {
             let (Some(&c), Some(&d)) = (base.get(a as usize), base.get(b as usize)) else { return 3.0 };
@@ -90,6 +96,8 @@ pub fn sweep(
             }
         });
     }
+    // Attempts differ by their seeds alone. With wants stated a closed front is not enough: the next attempts look
+    // for one that costs less.
     let mut best: Option<(Front, f64)> = None;
     let mut stopped = None;
     // The last attempt is one without wants, if no other closed: it may, and then costs nothing worse than a search.
@@ -120,7 +128,7 @@ pub fn sweep(
     if let Some(closed) = options.atlas.filter(|_| front.n_quads() > 0).and_then(|atlas| front.closed_from(atlas)) {
         front = closed;
     }
-    front.finish(stopped)
+    Swept { plugs, ..front.finish(stopped) }
 }
 
 /// Empties lenses of a front until none can be emptied; `None`, or why it stopped early.
@@ -180,6 +188,6 @@ impl Front {
             .collect();
         hexes.iter_mut().flatten().for_each(|v| *v = name[*v as usize]);
         front.iter_mut().flatten().for_each(|v| *v = name[*v as usize]);
-        Swept { n_vertices, hexes, front, stopped }
+        Swept { n_vertices, hexes, plugs: 0, front, stopped }
     }
 }

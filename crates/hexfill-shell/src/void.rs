@@ -3,6 +3,8 @@
 //! Invariants: the front is closed and oriented as the surface (outward of the void); `twin[twin[d]] = d`; every pair of
 //! vertices of one cell or front quad is in the pair table with its kind; `wanted` and `length` agree on both darts of an
 //! edge. Darts are `4 * quad + side`.
+//!
+//! Source: ours.
 
 use crate::compress::Coarse;
 use crate::dart::next;

@@ -11,6 +11,8 @@
 //!
 //! Where wants are stated (r hexes still wanted round each front edge), a flip has a cost: the sum of (r - 1)^2 over the edges the hex buries, of r^2
 //! over those that a zip buries, and of max(0, 1 - r)^2 over the edges at its rim, which lost one and need one more at least.
+//!
+//! Source: Bern, Eppstein and Erickson 2002 (flips); merging two tops by zips is ours.
 
 use crate::dart::{next, opposite, prev};
 use crate::front::{Front, NONE};
@@ -154,6 +156,8 @@ impl Front {
         if let Some(wants) = wants {
             for i in 0..3 {
                 pending.cost += square(wants[i][0] - 1.0);
+                // The three buried edges should have wanted this one hex and no more, hence the cost; rim edges have
+                // one more than before; a new inner edge wants four and has its first.
                 self.set_want(prev(darts[i]), wants[(i + 1) % 3][1] - 1.0);
                 self.set_want(opposite(darts[i]), wants[i][2] - 1.0);
                 self.set_want(darts[i], 3.0);
@@ -171,6 +175,7 @@ impl Front {
             self.set_degree(far, self.degree(far) + 1);
             self.set_dart_of(far, opposite(darts[i]));
         }
+        // Only these lost a quad, so only here may a vertex of degree 2 have come up.
         pending.queue.extend([a, b, c]);
     }
 

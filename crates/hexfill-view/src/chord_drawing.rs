@@ -2,6 +2,8 @@
 //!
 //! Components that are spheres are laid flat (`circle_packing.rs`) side by side; their vertex of highest degree is the outside.
 //! Same surface, same bytes: positions are rounded to a tenth of a unit.
+//!
+//! Source: ours.
 
 use crate::circle_packing::{Flat, lay_flat};
 use hexfill_mesh::{Chord, Dart, QuadId, QuadSurface, chords};

@@ -4,6 +4,8 @@
 //! Radii are found by relaxation (Collins and Stephenson, A circle packing algorithm, 2003): the angles at inner circles
 //! sum to a full turn, those on the rim are all equal. Unlike in Tutte's drawing chords cross nearly at right angles. The disk is
 //! then taken for a stereographic projection of the sphere and replaced by something like an equal-area one, which leaves room in the middle.
+//!
+//! Source: Collins, Stephenson 2003; the map of the disk that follows is ours.
 
 use hexfill_mesh::{Dart, QuadSurface, VertexId};
 use std::f64::consts::{PI, TAU};

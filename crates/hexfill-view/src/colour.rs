@@ -2,6 +2,8 @@
 //!
 //! The ramps are safe for the common kinds of colour blindness: ColorBrewer's red-yellow-blue for quality (red is
 //! bad) and samples of viridis for everything that only grows.
+//!
+//! Source: ColorBrewer and viridis, as said.
 
 /// A colour, red green blue, 0 to 255 each (sRGB).
 pub(crate) type Rgb = [u8; 3];

@@ -1,4 +1,6 @@
 //! A page of many small drawings: surfaces by their chords, each with words under it. One self-contained HTML file without scripts.
+//!
+//! Source: ours.
 
 use crate::chord_drawing::chord_thumbnail;
 use crate::page::escape;

@@ -1,4 +1,6 @@
 //! [`Groups`]: the parts of a boundary that have tags, to be told apart by colour.
+//!
+//! Source: ours.
 
 use hexfill_mesh::{Facet, HexId, HexMesh};
 use rustc_hash::FxHashMap;

@@ -7,6 +7,22 @@
 //!
 //! Invariant: both are pure functions of the input: same input, same bytes. They never fail: what does not fit
 //! the mesh (a missing position, a value too few) is left out, and the page says so ([`ViewInput::problems`]).
+//!
+//! Not for exploring files of millions of hexes (a page holds its data whole, 45 to 100 bytes a hex; ParaView reads what `hexfill-io` writes), nor for
+//! judging: colours show numbers that others computed. Invariants beside that: text of the user's can end no element of the page; a picture uses only
+//! operations that IEEE 754 fixes to the last bit. Paper: Collins, Stephenson 2003 (spheres laid flat); the key is that of the book's bibliography.
+//!
+//! ```
+//! use hexfill_mesh::HexMesh;
+//! use hexfill_view::{ViewInput, html, png};
+//!
+//! let mesh = HexMesh::try_new(8, &[[0, 1, 2, 3, 4, 5, 6, 7]])?;
+//! // One corner has no position: said, and not drawn.
+//! let input = ViewInput { title: "<b>", points: &[[0.0; 3]; 7], mesh: &mesh, hex_values: None, shelling: None, groups: None, facts: &[] };
+//! assert_eq!(input.problems().len(), 1);
+//! assert!(html(&input).contains("<title>&lt;b&gt;"));
+//! # Ok::<(), hexfill_mesh::HexMeshError>(())
+//! ```
 
 mod chord_drawing;
 mod circle_packing;

@@ -2,6 +2,8 @@
 //!
 //! Everything that comes from the user passes [`escape`] (text in HTML) or [`json`] (data in a script element), so
 //! no title and no fact can end an element. The template is cut at its marks once and what is put in is never searched again.
+//!
+//! Source: ours.
 
 use crate::ViewInput;
 use crate::colour::{FLAGGED, GROWTH, INSIDE, QUALITY, Rgb, SURFACE, Scale, UNKNOWN, category};

@@ -1,4 +1,6 @@
 //! Two meshes beside each other: two whole pages in one, whose cameras and cuts follow each other.
+//!
+//! Source: ours.
 
 use crate::ViewInput;
 use crate::page::{self, escape};

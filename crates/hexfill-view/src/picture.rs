@@ -1,6 +1,8 @@
 //! A still picture of a mesh: the surface, and the mesh cut open with its hexes drawn slightly shrunk.
 //!
 //! Parallel projection along a fixed direction, z up; see [`crate::raster`] for why the bytes are reproducible.
+//!
+//! Source: ours.
 
 use crate::ViewInput;
 use crate::colour::{INSIDE, Rgb, SURFACE, Scale, category};

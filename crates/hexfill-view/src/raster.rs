@@ -2,6 +2,8 @@
 //!
 //! Only `+ - * /` and square roots are used, which IEEE 754 fixes to the last bit, so a picture has the same bytes
 //! on every machine. Depth grows away from the eye; the nearest sample wins, the first drawn on a tie.
+//!
+//! Source: textbook knowledge: half-plane functions and a depth buffer; that its bytes are fixed is ours.
 
 use crate::colour::Rgb;
 

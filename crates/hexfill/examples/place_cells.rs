@@ -115,11 +115,9 @@ fn place(cell: &Cell, time: Duration, sides: &[f64]) -> Option<(Parameters, f64,
     if std::env::var_os("BOUND").is_some() {
         return Some((parent, best, None));
     }
-    let mut how = Options::new(Objective::ScaledJacobian);
-    how.starts = 4;
+    let mut how = Options::new(Objective::ScaledJacobian).with_starts(4);
     let mut made = embed(&mesh, &boundary(&parent), None, &how, &ctx).ok()?;
-    how.starts = 1;
-    how.programs = 25;
+    how = how.with_starts(1).with_programs(25);
     let (begin, mut width) = (Instant::now(), 0.05);
     while begin.elapsed() < time {
         let child = normal.child(&parent, &free, width);

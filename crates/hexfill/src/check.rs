@@ -1,4 +1,6 @@
 //! [`check_mesh`]: the judge on any mesh, ours or not.
+//!
+//! Source: ours.
 
 use crate::problem::Problem;
 use hexfill_check::{Judged, Options, Report, judge};

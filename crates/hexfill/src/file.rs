@@ -1,4 +1,6 @@
 //! Meshes as file data, and into files.
+//!
+//! Source: ours.
 
 use crate::fill::filled::Filled;
 use crate::place::placed::Placed;

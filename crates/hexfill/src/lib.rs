@@ -94,7 +94,10 @@ pub use fill::filled::{FillResult, Filled, Route};
 pub use fill::maker::Maker;
 pub use fill::options::{Effort, FillOptions, InteriorFrom, Prefer, Strategy};
 pub use hexfill_check::{CellQuality, Level, Options as CheckOptions, Report as CheckReport, Rules};
-pub use hexfill_construct::{CellChoice, ConstructError, Existence, GivenTets, MissingInterior, TetgenTets, existence};
+pub use hexfill_construct::{
+    CellChoice, ConstructError, Existence, GivenTets, MissingInterior, NoChain, TetMisfit, TetgenTets, Undecided,
+    existence,
+};
 pub use hexfill_embed::{EmbedError, EmbedReport, Objective, Options as EmbedOptions};
 pub use hexfill_mesh::{Context, Progress, StopReason};
 pub use hexfill_search::{Atlas, AtlasError, Collapse, GrowOptions, SimplifyOptions, SimplifyReport};

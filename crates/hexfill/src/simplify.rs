@@ -1,4 +1,6 @@
 //! `simplify`: a mesh with fewer hexes and the same boundary, judged before it is given out.
+//!
+//! Source: Verhetsel et al. 2018, by way of `hexfill-search`.
 
 use crate::keep_valid::Valid;
 use hexfill_check::{Judged, Level, Parts, judge};
@@ -160,8 +162,8 @@ pub(crate) fn simplified(
     atlas: Option<&Atlas>,
     ctx: &Context<'_>,
 ) -> Simplified {
-    if options.balls == 0 {
-        return collapse(mesh, options.collapse, ctx);
+    if options.balls() == 0 {
+        return collapse(mesh, options.collapses(), ctx);
     }
     simplify_mesh(mesh, atlas.unwrap_or_else(|| simplification_atlas()), options, ctx)
 }

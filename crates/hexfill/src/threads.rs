@@ -1,4 +1,6 @@
 //! Work on threads of its own: none is left behind when it is done, and none is shared with another process or library.
+//!
+//! Source: ours.
 
 use rayon::ThreadPoolBuilder;
 

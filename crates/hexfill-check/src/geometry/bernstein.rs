@@ -5,6 +5,8 @@
 //! `B_ijk = mean of det(E1[b][c], E2[a'][c'], E3[a''][b''])` over `a'+a''=i, b+b''=j, c+c'=k`. The 8 corner and 12 edge
 //! coefficients give the rest: because the edge vectors are differences of 8 points,
 //! `face = (2 * its four edges - its four corners) / 4` and `centre = (all edges - all corners) / 4`.
+//!
+//! Source: Johnen, Weill, Remacle 2017, whose 20 determinants give all 27 coefficients.
 
 use hexfill_mesh::cube::corner_at;
 

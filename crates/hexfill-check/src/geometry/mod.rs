@@ -1,8 +1,8 @@
 //! Levels 4 and 5: everything that needs coordinates.
 //!
-//! Source: A. Johnen, J.-C. Weill, J.-F. Remacle, "Robust and efficient validation of the linear hexahedral element", Procedia
-//! Engineering 203 (2017), arXiv:1706.01613. The determinant of the trilinear map is tri-quadratic; its 27 Bernstein
-//! coefficients bound it on the whole hex.
+//! The determinant of the trilinear map is tri-quadratic; its 27 Bernstein coefficients bound it on the whole hex.
+//!
+//! Source: Johnen, Weill, Remacle 2017 (arXiv:1706.01613).
 
 pub(crate) mod bernstein;
 pub(crate) mod exact;

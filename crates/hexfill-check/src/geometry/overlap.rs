@@ -10,6 +10,8 @@
 //! hulls (quads without a common vertex; they are cut into quarters where needed), or a plane through the common vertex or edge
 //! has the remaining corners strictly on different sides. The plane is sought by Gilbert's algorithm for the point of least
 //! norm of a convex hull, and checked with an error bound. What is not separated is not proved to overlap.
+//!
+//! Source: ours; Gilbert 1966 for the plane between two hulls.
 
 use super::bernstein::{UNIT, Vector, dot, norm};
 use crate::parallel::tasks;
@@ -113,6 +115,7 @@ fn separated(a: &[u32; 4], b: &[u32; 4], points: &[Vector]) -> bool {
     let (p, q) = (a.map(at), b.map(at));
     match common[..] {
         [] => {
+            // The error of a coordinate difference is relative to the coordinates and not to the difference.
             let size = p.iter().chain(&q).flatten().fold(0.0, |m: f64, x| m.max(x.abs()));
             apart(&p, &q, 0, size, &mut 0)
         }
@@ -159,6 +162,8 @@ pub(crate) fn overlap(
             ([low, high], i as u32)
         })
         .collect();
+    // Sweep along x: only quads whose boxes begin before this one ends can meet it. Simple, and linear in practice
+    // for surfaces, whose quads are small; a tree would only help where many quads stand one behind the other.
     boxes.sort_by(|a, b| a.0[0][0].total_cmp(&b.0[0][0]).then(a.1.cmp(&b.1)));
     let (mut pairs, mut bad) = (0, Vec::new());
     for first in (0..boxes.len()).step_by(4096) {

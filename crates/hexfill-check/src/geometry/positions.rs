@@ -1,4 +1,6 @@
 //! Level 4 as a whole, and level 5 for a range of hexes.
+//!
+//! Source: ours.
 
 use super::bernstein::Vector;
 use super::positivity::{decide, surely_positive};

@@ -1,5 +1,7 @@
 //! Level 5 for one hex: a floating-point filter with proved error bounds, bisection, and exact arithmetic where they leave a
 //! doubt.
+//!
+//! Source: Johnen, Weill, Remacle 2017 (coefficients, then subdivision); the filter with its error bound and the exact end are ours.
 
 use super::bernstein::{CORNERS, Cell, ERROR, Frame, UNIT, Vector, halve};
 use super::exact;

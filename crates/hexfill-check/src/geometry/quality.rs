@@ -1,4 +1,6 @@
 //! Quality numbers of hexes: scaled Jacobian at the corners, Verdict's, certified; condition number, edge ratio, volume.
+//!
+//! Source: Knupp et al. 2006 (Verdict's numbers); the certified interval is ours.
 
 use super::bernstein::{CORNERS, Frame, Lengths, Vector, cross, dot, norm};
 use super::positivity::decide;
@@ -258,6 +260,8 @@ pub(crate) fn measure(
             .for_each(|part| total.append(part));
     }
     let [mut lower, mut upper] = total.certified;
+    // The corners' least value is an upper bound of the mesh's: a hex whose certified bound is above it cannot be the
+    // worst, and need not be looked at closer.
     let effort = effort(total.corner);
     for batch in total.doubtful.chunks(FEW * BATCH) {
         if ctx.stop().is_some() {
@@ -272,6 +276,7 @@ pub(crate) fn measure(
                 (low.min(bounds.lower), high.min(bounds.upper))
             })
         });
+        // Minima in a fixed order; they are exact, so any order would do.
         for (low, high) in parts {
             lower = lower.min(low);
             upper = upper.min(high);

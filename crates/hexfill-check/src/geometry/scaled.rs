@@ -3,6 +3,8 @@
 //! SJ = det J / (|J1| |J2| |J3|). On a box with Bernstein coefficients B of det J and N of the product of norms (see
 //! [`norm_products`]), `SJ >= min B/N` wherever that is not negative; values at corners of boxes bound the minimum from
 //! above. The box with the smallest lower bound is halved until the interval is short. Rounding goes outward.
+//!
+//! Source: ours, on the coefficients of Johnen, Weill, Remacle 2017.
 
 use super::bernstein::{CORNERS, Cell, ERROR, Frame, Lengths, UNIT, Vector, halve, norm_products};
 use std::cmp::Ordering;
@@ -69,6 +71,8 @@ const UNSCALED: std::ops::RangeInclusive<f64> = 1e-60..=1e60;
 #[inline]
 pub(crate) fn normal_frame(p: &[Vector; 8]) -> (Frame, bool) {
     let size = p.iter().flatten().fold(0.0, |m: f64, x| m.max(x.abs()));
+    // Twice: first the coordinates, so that their differences are finite, then the edges, so that products of three
+    // are.
     let far = size > 0.0 && !UNSCALED.contains(&size);
     let q = if far { scaled(p, -exponent(size)) } else { *p };
     let frame = Frame::new(&q);
@@ -162,6 +166,7 @@ impl Whole {
             if done || visited >= effort.boxes || parts[worst].cell.depth >= 100 {
                 return Interval { lower: lower.min(upper), upper };
             }
+            // The box with the least bound is halved, as no other can raise the bound of the whole.
             heap.pop();
             let Part { frame, b, error, cell, .. } = &parts[worst];
             let axis = cell.axis();

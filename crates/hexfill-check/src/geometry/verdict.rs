@@ -1,4 +1,6 @@
 //! What can be said of det J.
+//!
+//! Source: ours.
 
 use super::bernstein::Vector;
 

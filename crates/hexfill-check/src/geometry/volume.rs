@@ -3,6 +3,8 @@
 //! The volume of a trilinear hex is the mean of its 27 Bernstein coefficients. The flux of x/3 through a bilinear quad is the
 //! mean over the two ways of cutting it into triangles. Interior quads cancel, so the two sums agree up to rounding in every
 //! mesh whose quads pair up in opposite senses: the balance is a check of the arithmetic and of the incidence.
+//!
+//! Source: ours; the theorem of Gauss.
 
 use super::bernstein::{Vector, cross, dot};
 use crate::topology::boundary_quad::BoundaryQuad;

@@ -1,4 +1,6 @@
 //! Level 3: the boundary against the prescribed surface, and the components of the boundary with their genus.
+//!
+//! Source: ours.
 
 use super::boundary_quad::BoundaryQuad;
 use super::parity::ParityForest;
@@ -117,6 +119,7 @@ impl Matching {
             let quad = boundary[b as usize];
             findings.add(Rule::BoundaryQuadExtra, || Offender::at(&[quad.hex], &quad.cycle));
         }
+        // Found in the order of threads, told in the order of ids.
         self.missing.sort_unstable();
         for q in self.missing {
             let quad = surface[q as usize];

@@ -1,4 +1,6 @@
 //! Boundary quads.
+//!
+//! Source: ours.
 
 /// A quad in exactly one hex, as a cycle that is counter-clockwise seen from outside, smallest vertex first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,4 +1,6 @@
 //! Edges and quads as lists, star by star: what the homology needs and no more.
+//!
+//! Source: ours.
 
 use super::star::corner_table;
 use super::stars::Stars;
@@ -24,6 +26,7 @@ impl Edges {
                 for &code in stars.of(v as u32) {
                     let hex = &hexes[(code >> 3) as usize];
                     let corner = &table[(code & 7) as usize];
+                    // An edge is listed at its smaller end, so every edge once and each list is sorted.
                     near.extend(corner[..3].iter().map(|&k| hex[k]).filter(|&w| w > v as u32));
                 }
                 near.sort_unstable();
@@ -91,6 +94,8 @@ pub(crate) fn quads_of_task(task: usize, hexes: &[[u32; 8]], stars: &Stars, tabl
             for k in 0..3 {
                 let (x, y, w) = (corner[(k + 1) % 3], corner[(k + 2) % 3], corner[3 + k]);
                 if v < x && v < y && v < w {
+                    // By the opposite corner first: that tells a quad at `v` apart in a proper mesh; the other two
+                    // make it certain in any.
                     near.push(([w, x.min(y), x.max(y)], code >> 3));
                 }
             }

@@ -10,6 +10,9 @@
 //!    matrix: b1 = c1 - r, b2 = c2 - r, b3 = number of closed parts, b0 = number of trees.
 //!
 //! If one vertex is the only critical cell, the mesh collapses to a point; a manifold that does is a ball (Whitehead).
+//!
+//! Source: Forman 1998 (discrete Morse theory), Benedetti and Lutz 2014 (that simple choices of what to collapse nearly always do); Whitehead 1939 (a manifold that
+//! collapses is a ball).
 
 use super::cells::{CHUNK, Edges, quads_of_task};
 use super::star::corner_table;
@@ -95,6 +98,7 @@ fn spine(hexes: &[[u32; 8]], stars: &Stars, edges: &Edges, ctx: &Context<'_>) ->
             return None;
         }
         let last = (first + BATCH).min(n_tasks);
+        // Listed in parallel, joined in order: which quads are in the forest must not depend on threads.
         let lists = tasks(last - first, |i| quads_of_task(first + i, hexes, stars, &table));
         let left: Vec<[u32; 4]> = lists
             .into_iter()
@@ -137,6 +141,8 @@ impl Collapse {
         for (q, quad) in quads.iter().enumerate() {
             for &e in quad {
                 count[e as usize] += 1;
+                // No list of quads an edge: a free edge has one quad left, and then the exclusive or of those there
+                // were is its index.
                 mix[e as usize] ^= q as u32;
             }
         }
@@ -203,6 +209,7 @@ impl Collapse {
             if ctx.stop().is_some() {
                 return None;
             }
+            // What each edge amounts to in critical ones, 64 of them at once as bits of one word.
             image.fill(0);
             for (bit, &e) in columns.iter().enumerate() {
                 image[e as usize] = 1 << bit;

@@ -3,6 +3,8 @@
 //! Each entry holds `parent << 1 | parity`, parity 1 meaning "ordered in the sense opposite to the parent". A root is
 //! the smallest index of its part whatever the order of the unions, so parts and colours do not depend on the threads.
 //! Concurrent linking by compare-and-swap after Anderson and Woll (1991); path halving keeps every relation true.
+//!
+//! Source: Anderson and Woll 1991; the parity in the lowest bit is ours.
 
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 

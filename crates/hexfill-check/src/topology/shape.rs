@@ -1,4 +1,6 @@
 //! Level 1: every index in range, every hex with eight distinct vertices, every surface quad with four.
+//!
+//! Source: ours.
 
 use super::stars::MAX_HEXES;
 use crate::input::Judged;

@@ -20,6 +20,8 @@
 //! sorted by the other vertex. The same sorted list pairs the quads round the vertex, because a quad at `v` is known by its
 //! corner opposite to `v`: the list has the incidence of the vertex link too. Work is linear in the mesh but for the sorting
 //! within each star.
+//!
+//! Source: ours.
 
 use super::parity::ParityForest;
 use crate::report::{Findings, Offender};
@@ -380,6 +382,7 @@ impl<'a> StarJudge<'a> {
                 let opposite = near[3 + k];
                 let mut key = [near[(k + 1) % 3], near[(k + 2) % 3], opposite];
                 key.sort_unstable();
+                // Each at its smallest vertex, so that it is told once.
                 if v < key[0] {
                     quads.push((key, opposite, codes[i] >> 3));
                 }

@@ -2,6 +2,8 @@
 //!
 //! Two passes over the hexes and one array of `8 * hexes` codes; no hash map. Every range of vertices is filled by one
 //! thread that scans all hexes in order, so the arrays do not depend on the number of threads.
+//!
+//! Source: ours; counting sort.
 
 use rayon::prelude::*;
 
@@ -28,6 +30,7 @@ impl Stars {
             let low = (r * step) as u32;
             for hex in hexes {
                 for &v in hex {
+                    // One comparison for both ends of the range: below `low` the difference wraps to a huge number.
                     if let Some(count) = counts.get_mut(v.wrapping_sub(low) as usize) {
                         *count += 1;
                     }
@@ -39,6 +42,7 @@ impl Stars {
         } else {
             offsets[1..].par_chunks_mut(step).enumerate().for_each(count);
         }
+        // Starts from numbers, the counting sort's second step; the third fills every range from its own start.
         let mut sum = 0;
         for o in &mut offsets[1..] {
             sum += *o;

@@ -8,6 +8,8 @@
 //! 4. afterwards every boundary edge is in exactly two boundary quads.
 //!
 //! Gluings of opposite facets must keep orientation; that is judged with level 3 (`non-orientable`).
+//!
+//! Source: Weill.
 
 use crate::report::{Findings, Offender};
 use crate::rule::Rule;
@@ -108,6 +110,7 @@ fn judge_earlier(
     around: &[Vec<u32>],
     findings: &mut Findings,
 ) {
+    // A hex occurs as often as it shares vertices, so its run in the sorted list is the number rule 3 asks for.
     let mut earlier: Vec<u32> = hex.iter().flat_map(|&v| around[v as usize].iter().copied()).collect();
     earlier.sort_unstable();
     for same in earlier.chunk_by(|a, b| a == b) {

@@ -354,7 +354,8 @@ fn stats(atlas: &Atlas, console: &Console) -> anyhow::Result<Exit> {
         })
         .collect();
     if console.json {
-        console.print_json(&rows)?;
+        let report = serde_json::json!({ "states": stats.states, "levels": stats.levels, "by_quads": rows });
+        console.print_json(&report)?;
         return Ok(Exit::Done);
     }
     console.print(format!("{} states, up to {} hexes", stats.states, stats.levels))?;
@@ -402,7 +403,7 @@ fn lookup(surface: &str, atlases: &[&Atlas], console: &Console) -> anyhow::Resul
     rows.sort_by_key(|row| (row.hexes, row.interior_vertices, row.blocked_pairs));
     rows.dedup();
     if console.json {
-        console.print_json(&rows)?;
+        console.print_json(&serde_json::json!({ "fillings": rows }))?;
     } else if rows.is_empty() {
         console.say(format!("{surface}: not in the atlas, which proves nothing; try `hexfill fill`"));
     } else {

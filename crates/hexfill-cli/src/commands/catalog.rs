@@ -5,8 +5,10 @@ use crate::exit::Exit;
 use crate::files;
 use anyhow::bail;
 use hexfill::catalog::{self, Entry};
-use hexfill::{Problem, ProblemError};
+use hexfill::io::{Format, MeshData};
+use hexfill::{Context, EmbedOptions, Problem, ProblemError, StopReason};
 use serde::Serialize;
+use std::path::Path;
 
 /// Flags of `catalog`.
 #[derive(clap::Args)]
@@ -26,7 +28,7 @@ enum CatalogCommand {
         /// Write the surface to this file.
         #[arg(short, long, value_name = "OUT")]
         output: Option<String>,
-        /// Write the best mesh known to this file (connectivity in JSON; other formats need coordinates).
+        /// Write the best mesh known to this file: in JSON its connectivity alone, in other formats laid into the surface and embedded.
         #[arg(long, value_name = "OUT")]
         mesh: Option<String>,
     },
@@ -62,12 +64,12 @@ fn describe(entry: &Entry) -> anyhow::Result<Shown> {
 }
 
 /// Lists or shows.
-pub(crate) fn run(args: &CatalogArgs, console: &Console) -> anyhow::Result<Exit> {
+pub(crate) fn run(args: &CatalogArgs, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
     match args.command.as_ref().unwrap_or(&CatalogCommand::List) {
         CatalogCommand::List => {
             let all = catalog::entries().iter().map(describe).collect::<anyhow::Result<Vec<_>>>()?;
             if console.json {
-                console.print_json(&all)?;
+                console.print_json(&serde_json::json!({ "problems": all }))?;
             } else {
                 for entry in all {
                     console.print(format!("{:<22} {:>3} quads  {}", entry.name, entry.quads, entry.best))?;
@@ -93,10 +95,35 @@ pub(crate) fn run(args: &CatalogArgs, console: &Console) -> anyhow::Result<Exit>
                 files::write_data(path, None, &entry.data(), console)?;
             }
             if let Some(path) = mesh {
-                let Some(data) = entry.best_mesh() else { bail!("no mesh is shipped for {}", shown.name) };
-                files::write_data(path, None, &data, console)?;
+                return write_best_mesh(entry, path, console, ctx);
             }
         }
     }
     Ok(Exit::Done)
+}
+
+/// The mesh stored for an entry. Where the format has to have coordinates it gets the surface's own, and those of the interior are embedded: exit
+/// code 1 if some hex is not certified.
+fn write_best_mesh(entry: &Entry, path: &str, console: &Console, ctx: &Context<'_>) -> anyhow::Result<Exit> {
+    let Some(mut data) = entry.best_mesh() else { bail!("no mesh is shipped for :{}", entry.name) };
+    files::check_output(path, None)?;
+    if Format::from_path(Path::new(path))? == Format::Json {
+        files::write_data(path, None, &data, console)?;
+        return Ok(Exit::Done);
+    }
+    let Some(boundary) = Problem::named(entry.name)?.positions() else {
+        bail!(
+            ":{} has no coordinates, and none can be computed; write JSON, which holds connectivity alone",
+            entry.name
+        )
+    };
+    let surface = MeshData { points: boundary.clone(), has_coordinates: true, ..entry.data() };
+    files::check_mesh_output(path, None, &surface)?;
+    let placed = hexfill::embed_mesh(&data.hex_mesh()?, &boundary, None, &EmbedOptions::default(), ctx)?;
+    console.say(placed.report().to_string());
+    placed.flag(&mut data);
+    (data.points, data.has_coordinates) = (placed.points().to_vec(), true);
+    files::write_data(path, None, &data, console)?;
+    let stop = placed.embedding().map_or(StopReason::Finished, |report| report.stop);
+    Ok(Exit::of_stop(stop, if placed.is_certified() { Exit::Done } else { Exit::No }))
 }

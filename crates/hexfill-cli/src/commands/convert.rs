@@ -1,6 +1,6 @@
 //! `hexfill convert IN -o OUT`.
 
-use crate::console::Console;
+use crate::console::{self, Console};
 use crate::exit::Exit;
 use crate::files;
 
@@ -40,12 +40,12 @@ pub(crate) fn run(args: &ConvertArgs, console: &Console) -> anyhow::Result<Exit>
         }))?;
     }
     console.say(format!(
-        "{}: {} points, {} quads, {} other faces, {} hexes",
+        "{}: {} points, {} quads, {} other faces, {}",
         args.output,
         data.points.len(),
         data.quads.len(),
         data.other_faces.len(),
-        data.hexes.len()
+        console::hexes(data.hexes.len())
     ));
     Ok(Exit::Done)
 }

@@ -74,7 +74,9 @@ pub(crate) fn run(args: &DoctorArgs, console: &Console) -> anyhow::Result<Exit> 
                 console.say(format!("mended: {done}"));
             }
             if cured.done.is_empty() {
-                console.say("mended: nothing; what was found needs you");
+                let left =
+                    if before.can_be_filled { "it can be filled as it was read" } else { "what was found needs you" };
+                console.say(format!("mended: nothing; {left}"));
             }
             console.say(format!("written: {output}"));
             print(output, &after, console)?;

@@ -68,13 +68,13 @@ pub(crate) fn run(args: &EmbedArgs, console: &Console, ctx: &Context<'_>) -> any
         bail!("{} has no coordinates; `hexfill fill` places the boundary of a surface without any", args.mesh);
     }
     let mesh = HexMesh::try_new(data.points.len(), &data.hexes)?;
-    let mut options = EmbedOptions::new(match args.objective {
+    let options = EmbedOptions::new(match args.objective {
         ObjectiveArg::Sj => Objective::ScaledJacobian,
         ObjectiveArg::Balanced => Objective::Balanced,
         ObjectiveArg::Untangle => Objective::UntangleOnly,
-    });
-    options.starts = args.starts;
-    options.symmetric = args.symmetric;
+    })
+    .with_starts(args.starts)
+    .with_symmetric(args.symmetric);
     let start = (!args.fresh).then_some(data.points.as_slice());
     let placed = hexfill::embed_mesh(&mesh, &data.points, start, &options, ctx)?;
     let stop = placed.embedding().map_or(StopReason::Finished, |report| report.stop);

@@ -1,6 +1,6 @@
 //! `hexfill info SURFACE|MESH`.
 
-use crate::console::Console;
+use crate::console::{self, Console};
 use crate::exit::Exit;
 use crate::files;
 use anyhow::bail;
@@ -191,14 +191,19 @@ fn mesh_info(args: &InfoArgs, data: &MeshData, console: &Console) -> anyhow::Res
 
 fn print_mesh(info: &MeshInfo, console: &Console) -> anyhow::Result<()> {
     console.print(format!(
-        "hex mesh: {} hexes, {} vertices ({} interior), {} boundary quads",
-        info.hexes, info.vertices, info.interior_vertices, info.boundary_quads
+        "hex mesh: {}, {} vertices ({} interior), {} boundary quads",
+        console::hexes(info.hexes),
+        info.vertices,
+        info.interior_vertices,
+        info.boundary_quads
     ))?;
     console.print(format!("sheets: {}", info.sheets.len()))?;
     for (i, sheet) in info.sheets.iter().take(20).enumerate() {
         console.print(format!(
-            "  sheet {i}: {} hexes, {} self-crossings, {} boundary chords",
-            sheet.hexes, sheet.self_crossings, sheet.boundary_chords
+            "  sheet {i}: {}, {} self-crossings, {} boundary chords",
+            console::hexes(sheet.hexes),
+            sheet.self_crossings,
+            sheet.boundary_chords
         ))?;
     }
     if let Some(signature) = info.signature.as_ref().filter(|s| s.len() <= 4000) {

@@ -1,6 +1,6 @@
 //! `hexfill view MESH -o view.html`.
 
-use crate::console::Console;
+use crate::console::{self, Console};
 use crate::exit::Exit;
 use crate::files;
 use anyhow::bail;
@@ -70,8 +70,8 @@ pub(crate) fn run(args: &ViewArgs, console: &Console) -> anyhow::Result<Exit> {
         let hexes = if let [one] = hexes[..] { one.into() } else { serde_json::json!(hexes) };
         console.print_json(&serde_json::json!({ "file": args.output, "hexes": hexes }))?;
     }
-    let words: Vec<String> = hexes.iter().map(usize::to_string).collect();
-    console.say(format!("{}: {} hexes", args.output, words.join(" and ")));
+    let words: Vec<String> = hexes.iter().map(|&n| console::hexes(n)).collect();
+    console.say(format!("{}: {}", args.output, words.join(" and ")));
     Ok(Exit::Done)
 }
 

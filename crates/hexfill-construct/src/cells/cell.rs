@@ -6,6 +6,8 @@
 //! *wall-safe*: no interior edge, interior quad or body diagonal joins two points of one side facet. That is
 //! what allows any two cells to meet (see the page `construction` of the book). A filling that is not wall-safe
 //! is made so by [`Cell::pillowed`].
+//!
+//! Source: Eppstein 1999 for the idea of a few cells once and for all; the cells and the condition of wall-safety are ours.
 
 use super::pattern::{Pattern, Role};
 use hexfill_mesh::cube::{BODY_DIAGONALS, EDGES, FACET_DIAGONALS, FACETS};

@@ -1,4 +1,6 @@
 //! The cell files, by name. A list, because a build script is not worth it.
+//!
+//! Source: ours (book, page `construction`, "Hexes: the cells").
 
 /// One for every class of patterns.
 pub(super) const CELL_FILES: &[(&str, &str)] = &[

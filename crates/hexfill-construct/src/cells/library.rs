@@ -1,4 +1,6 @@
 //! All cells, looked up by pattern.
+//!
+//! Source: ours; that 21 patterns are all there are is counted by its tests.
 
 use super::cell::Cell;
 use super::cell_files::{CELL_FILES, EMBEDDED_CELL_FILES};

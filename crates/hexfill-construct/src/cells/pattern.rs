@@ -15,8 +15,8 @@
 //!   3 (`heavy`, a star s at one end).
 //!
 //! Invariant: a cell has an even number of quads iff an odd number of its sides is heavy.
-//! Source: J. Erickson, "Efficiently hex-meshing things with topology" (2014), with the cheaper bipartite facets
-//! of K. Verhetsel et al. (2019); both are the same construction with another colouring.
+//!
+//! Source: Erickson 2014, section 5, with the cheaper bipartite facets of Verhetsel et al. 2019: the same construction with another colouring.
 
 use std::fmt;
 use std::str::FromStr;

@@ -4,6 +4,8 @@
 //! 2 at (1, 1), 3 at (1, -1). All sides are planar and congruent: a point of a side has coordinates (u, z), u = -1 at
 //! the diagonal corner and +1 at the odd corner, so neighbours agree on it. The numbers were found by the example `place_cells` of
 //! `hexfill` (book, page `construction`, "Cells").
+//!
+//! Source: ours (book, page `construction`, "Positions: from topology to geometry").
 
 use super::cell::Cell;
 use super::pattern::{Pattern, Role, Side};

@@ -4,10 +4,13 @@
 //! along disks has such edges). Invariant: local edge `k` of a tet joins its vertices [`TET_EDGES`]`[k]`, local face `i`
 //! is opposite its vertex `i`, and every tet is positively oriented (vertices 1, 2, 3 counter-clockwise seen from 0 are
 //! clockwise; that is, det(v1-v0, v2-v0, v3-v0) > 0 in an embedding).
+//!
+//! Source: ours; complexes in which two edges may join the same vertices are the Delta-complexes of Hatcher 2002, section 2.1.
 
 use super::request::TetRequest;
 use crate::error::ConstructError;
 use crate::ids::{EdgeId, FaceId, TetId};
+use crate::misfit::TetMisfit;
 use hexfill_mesh::{Id, IdVec, VertexId};
 
 /// Ends of the six local edges of a tet.
@@ -95,18 +98,21 @@ impl TetComplex {
     /// # Errors
     /// [`ConstructError::TetBoundary`] if the boundary is anything but those triangles.
     pub fn match_boundary(&self, request: &TetRequest<'_>) -> Result<Vec<FaceId>, ConstructError> {
-        fn err<T>(reason: String) -> Result<T, ConstructError> {
+        fn err<T>(reason: TetMisfit) -> Result<T, ConstructError> {
             Err(ConstructError::TetBoundary { reason })
         }
         if self.n_vertices < request.n_vertices {
-            return err(format!("{} vertices given, at least {} needed", self.n_vertices, request.n_vertices));
+            return err(TetMisfit::TooFewVertices { given: self.n_vertices, needed: request.n_vertices });
         }
-        if let Some(t) = self.tets.iter().position(|t| t.iter().any(|v| v.index() >= self.n_vertices)) {
-            return err(format!("tetrahedron {t} uses a vertex beyond the {} given", self.n_vertices));
+        let beyond = |&v: &VertexId| v.index() >= self.n_vertices;
+        if let Some((tet, vertex)) =
+            self.tets.enumerate().find_map(|(t, tet)| Some((t, tet.iter().copied().find(beyond)?)))
+        {
+            return err(TetMisfit::IndexOutOfRange { tet, vertex, limit: self.n_vertices });
         }
         let degree = self.face_degrees();
-        if let Some(f) = degree.iter().position(|&d| d > 2) {
-            return err(format!("face {f} is in {} tetrahedra", degree[FaceId::new(f)]));
+        if let Some((face, &given)) = degree.enumerate().find(|(_, d)| **d > 2) {
+            return err(TetMisfit::CrowdedFace { face, given });
         }
         // Boundary faces as (sorted vertices, outward parity, face).
         let mut have: Vec<([VertexId; 3], [VertexId; 3], FaceId)> = Vec::new();
@@ -120,19 +126,21 @@ impl TetComplex {
             }
         }
         have.sort_unstable();
+        // Faces are named, so two may have the same vertices (an apex with two edges to one vertex); on the boundary
+        // that would leave open which of them is meant.
         if let Some(w) = have.windows(2).find(|w| w[0].0 == w[1].0) {
-            return err(format!("two boundary faces have the vertices {:?}", w[0].0.map(|v| v.0)));
+            return err(TetMisfit::DoubleFace { vertices: w[0].0 });
         }
         if have.len() != request.triangles.len() {
-            return err(format!("{} boundary triangles given, {} asked for", have.len(), request.triangles.len()));
+            return err(TetMisfit::TrianglesCount { given: have.len(), needed: request.triangles.len() });
         }
         request
             .triangles
             .iter()
             .map(|&t| match have.binary_search_by_key(&sorted(t), |h| h.0) {
                 Ok(i) if have[i].1 == smallest_first(t) => Ok(have[i].2),
-                Ok(_) => err(format!("triangle {:?} has its tetrahedron on the wrong side", t.map(|v| v.0))),
-                Err(_) => err(format!("triangle {:?} is missing", t.map(|v| v.0))),
+                Ok(_) => err(TetMisfit::WrongSide { vertices: t }),
+                Err(_) => err(TetMisfit::MissingTriangle { vertices: t }),
             })
             .collect()
     }

@@ -7,6 +7,8 @@
 //! most one diagonal, because no two quads share both ends of one; so the black triangles cut off are triangles of
 //! a simple planar graph, and the cone over a simplicial disk from the vertex whose star is the rest is simplicial.
 //! A white vertex of more than three quads is not cut off: 2 d - 4 tets instead of d.
+//!
+//! Source: Eppstein 1999 (a sphere coned to one point); cutting white vertices off first is ours.
 
 use super::complex::TetComplex;
 use super::maker::{Core, InteriorTets};

@@ -2,10 +2,13 @@
 //!
 //! A solid may have components with odd numbers of quads if their number is even (Erickson 2014 pairs them in the same way).
 //! What becomes of a corridor: `joins/mod.rs`.
+//!
+//! Source: Erickson 2014 (odd components are paired); the search for ways that do not touch is ours.
 
 use super::complex::TetComplex;
 use crate::error::ConstructError;
 use crate::ids::{FaceId, TetId};
+use crate::joins::no_chain::NoChain;
 use crate::surface::existence::Existence;
 use hexfill_mesh::{Forest, IdVec, QuadId, QuadSurface};
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
@@ -45,14 +48,13 @@ pub(crate) fn corridors(
             }));
         }
         let mut odd: BTreeSet<usize> = components.into_iter().filter(|&c| !size[c].is_multiple_of(2)).collect();
+        // An even sum of odd components is an even number of them, so they can be paired; nearest first is good
+        // enough, as each way costs some hexes a tet.
         while let Some(a) = odd.pop_first() {
             // Corridors do not share tets: their balls are filled one by one and must not overlap.
             let Some(tets) = ways.shortest(a, &odd) else {
                 let b = odd.first().copied().unwrap_or(a);
-                return Err(ConstructError::OddJoin {
-                    components: [a, b],
-                    reason: "earlier chains bar the way".into(),
-                });
+                return Err(ConstructError::OddJoin { components: [a, b], reason: NoChain::Barred });
             };
             let [start, end] = [tets[0], tets[tets.len() - 1]];
             let b = ways.component_at(end).unwrap_or(a);

@@ -2,6 +2,8 @@
 //!
 //! The layer's inner facet of a quad is two triangles, and the proof that cells and core meet properly (book, page
 //! `construction`, "Why the result is proper", 2) needs a tet to meet them in one simplex.
+//!
+//! Source: ours (book, page `construction`, "Why the result is proper").
 
 use super::complex::{TET_EDGES, TetComplex};
 use super::request::TetRequest;
@@ -32,6 +34,8 @@ pub(crate) fn fitted(
         }
     }
     let mut n_vertices = n_vertices;
+    // In the order of vertex ids, so that the same tets give the same points. It ends: a split makes no new edge
+    // between old vertices, so the list of edges only gets shorter.
     while let Some((edge, ring)) = around.pop_first() {
         let middle = VertexId::new(n_vertices);
         n_vertices += 1;
@@ -41,6 +45,7 @@ pub(crate) fn fitted(
         }
         for t in ring {
             let old = tets[t];
+            // Listed before another split took the edge away from this tet.
             if !edge.iter().all(|v| old.contains(v)) {
                 continue;
             }
@@ -52,6 +57,7 @@ pub(crate) fn fitted(
             }
         }
     }
+    // Vertices of the request stay whether used or not: their ids are the surface's.
     let mut used = vec![false; n_vertices];
     used[..request.n_vertices.min(n_vertices)].fill(true);
     tets.iter().flatten().for_each(|v| used[v.index()] = true);

@@ -2,12 +2,16 @@
 //!
 //! They must fill exactly the triangles of [`crate::core_triangles`]; the boundary is compared with the request by
 //! the construction.
+//!
+//! Source: Erickson 2014, section 5, takes tetrahedra of the interior as given; so does this.
 
 use super::complex::TetComplex;
 use super::fit::fitted;
 use super::maker::{Core, InteriorTets};
 use super::request::TetRequest;
 use crate::error::ConstructError;
+use crate::ids::TetId;
+use crate::misfit::TetMisfit;
 use hexfill_geometry::tet_volume;
 use hexfill_mesh::{Context, VertexId};
 
@@ -28,19 +32,20 @@ impl InteriorTets for GivenTets {
     }
 
     fn fill(&self, request: &TetRequest<'_>, _ctx: &Context<'_>) -> Result<TetComplex, ConstructError> {
-        let err = |reason: String| Err(ConstructError::TetBoundary { reason });
-        for (t, tet) in self.tets.iter().enumerate() {
-            if let Some(v) = tet.iter().find(|&&v| v as usize >= self.n_vertices) {
-                return err(format!("tetrahedron {t} uses vertex index {v} of {}", self.n_vertices));
+        let err = |reason| Err(ConstructError::TetBoundary { reason });
+        for (t, corners) in self.tets.iter().enumerate() {
+            let tet = TetId::new(t);
+            if let Some(&v) = corners.iter().find(|&&v| v as usize >= self.n_vertices) {
+                return err(TetMisfit::IndexOutOfRange { tet, vertex: VertexId(v), limit: self.n_vertices });
             }
-            if (0..4).any(|i| tet[..i].contains(&tet[i])) {
-                return err(format!("tetrahedron {t} uses a vertex twice"));
+            if (0..4).any(|i| corners[..i].contains(&corners[i])) {
+                return err(TetMisfit::RepeatedVertex { tet });
             }
         }
         let mut tets: Vec<[VertexId; 4]> = self.tets.iter().map(|t| t.map(VertexId)).collect();
         if let Some(points) = &self.points {
             if points.len() != self.n_vertices {
-                return err(format!("{} positions given for {} vertices", points.len(), self.n_vertices));
+                return err(TetMisfit::PositionsCount { given: points.len(), needed: self.n_vertices });
             }
             for tet in &mut tets {
                 if tet_volume(tet.map(|v| points[v.index()])) < 0.0 {

@@ -2,6 +2,8 @@
 //!
 //! It is the surface scaled by one half towards a point that sees all of it, if the core is a cone from there, else an offset
 //! along the vertex normals by a part of the shortest edge at the vertex, shortened until the buffer cubes have positive corners.
+//!
+//! Source: ours (book, page `construction`, "Positions: from topology to geometry").
 
 use super::complex::TetComplex;
 use hexfill_geometry::{Vector, add, add_scaled, cross, det, dot, norm, scale, sub, tet_volume};

@@ -1,4 +1,6 @@
 //! Who makes the tetrahedra of the core.
+//!
+//! Source: ours.
 
 use super::complex::TetComplex;
 use super::request::TetRequest;

@@ -1,4 +1,6 @@
 //! Step 2: the core. The inner copy of the surface is filled with tetrahedra, by one of five makers ([`Core`]).
+//!
+//! Source: Erickson 2014, section 5: everything else needs nothing of the interior but tetrahedra; the makers name theirs.
 
 pub(crate) mod complex;
 pub(crate) mod cone;

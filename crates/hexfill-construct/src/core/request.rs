@@ -1,4 +1,6 @@
 //! What the tetrahedra have to fill.
+//!
+//! Source: ours.
 
 use crate::error::ConstructError;
 use crate::missing::MissingInterior;

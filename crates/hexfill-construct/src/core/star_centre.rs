@@ -1,4 +1,6 @@
 //! A point that sees the whole surface, if there is one.
+//!
+//! Source: ours: a subgradient method for a linear program in three unknowns, whose answer is tested and not trusted.
 
 use hexfill_geometry::{Vector, add_scaled, bounding_box, centroid, cross, det, dot, norm, sub};
 use hexfill_mesh::{QuadSurface, VertexId};

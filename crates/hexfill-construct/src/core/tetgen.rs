@@ -5,6 +5,8 @@
 //! apart (tetgen 1.5.0 stops on an assertion of its own on some small tori, on others only with `-M`). It fills everything that the surface encloses, cavities
 //! as well; which tets belong to the solid is decided here, by walking inward from the triangles asked for, and so is
 //! the orientation of each tet: nothing rests on the signs of small volumes.
+//!
+//! Source: the tetgen manual, for its files and options; the way back from an answer to tets inside is ours.
 
 use super::complex::{OUTWARD, TetComplex, others, sorted};
 use super::fit::fitted;
@@ -13,6 +15,7 @@ use super::request::TetRequest;
 use super::used::Used;
 use crate::error::ConstructError;
 use crate::ids::TetId;
+use crate::misfit::TetMisfit;
 use crate::missing::MissingInterior;
 use hexfill_geometry::tet_volume;
 use hexfill_mesh::{Context, IdVec, StopReason, VertexId};
@@ -42,7 +45,7 @@ const SWITCHES: [&str; 2] = ["-pYQ", "-pYMQ"];
 /// Why there is no answer.
 enum Failure {
     Reason(MissingInterior),
-    Boundary(String),
+    Boundary(TetMisfit),
     Stopped(StopReason),
 }
 
@@ -126,7 +129,7 @@ impl TetgenTets {
             .map_err(|what| MissingInterior::TetgenAnswer { program: self.program.display().to_string(), what })?;
         let n_own = own.vertices.len();
         if found.len() < n_own {
-            return Err(Failure::Boundary(format!("tetgen returned {} vertices of {n_own}", found.len())));
+            return Err(Failure::Boundary(TetMisfit::TetgenVertices { given: found.len(), needed: n_own }));
         }
         let tets = tets.into_iter().map(|t| t.map(|v| own.back(v))).collect();
         let mut all = points.to_vec();
@@ -181,13 +184,15 @@ fn inside(
     request: &TetRequest<'_>,
     points: &[[f64; 3]],
     mut tets: IdVec<TetId, [VertexId; 4]>,
-) -> Result<Vec<[VertexId; 4]>, String> {
+) -> Result<Vec<[VertexId; 4]>, TetMisfit> {
     // Every face with the tets it belongs to, in order.
     let mut faces: Vec<([VertexId; 3], TetId)> = Vec::with_capacity(4 * tets.len());
     for (t, tet) in tets.enumerate() {
         faces.extend((0..4).map(|i| (sorted(others(i).map(|k| tet[k])), t)));
     }
     faces.sort_unstable();
+    // A sorted list instead of a map: faces are asked for a few times each, and the answer keeps the order of the
+    // tets.
     let with = |face: [VertexId; 3]| {
         let start = faces.partition_point(|f| f.0 < face);
         faces[start..].iter().take_while(move |f| f.0 == face)
@@ -196,10 +201,7 @@ fn inside(
     walls.sort_unstable();
     let missing = request.triangles.iter().filter(|&&t| with(sorted(t)).next().is_none()).count();
     if missing > 0 {
-        return Err(format!(
-            "tetgen did not keep {missing} of {} triangles: it split or flipped the boundary",
-            request.triangles.len()
-        ));
+        return Err(TetMisfit::TetgenBoundary { missing, triangles: request.triangles.len() });
     }
     // All tets of tetgen turn the same way, by exact predicates; the sum of their volumes tells which.
     let total: f64 = tets.iter().map(|t| tet_volume(t.map(|v| points[v.index()]))).sum();
@@ -217,12 +219,11 @@ fn inside(
     for &triangle in request.triangles {
         match with(sorted(triangle)).map(|f| f.1).find(|&t| shows(&tets[t], triangle)) {
             Some(t) => stack.push(t),
-            None => {
-                let triangle = triangle.map(|v| v.0);
-                return Err(format!("tetgen left the inner side of triangle {triangle:?} empty: does it face inward?"));
-            }
+            None => return Err(TetMisfit::TetgenEmptySide { vertices: triangle }),
         }
     }
+    // From the wall inward, never through a wall: cavities and the hull's pockets, which tetgen fills as well, are
+    // not reached.
     while let Some(t) = stack.pop() {
         if std::mem::replace(&mut keep[t], true) {
             continue;

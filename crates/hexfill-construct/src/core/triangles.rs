@@ -1,4 +1,6 @@
 //! The inner copy of the surface as triangles: what the tetrahedra have to fill.
+//!
+//! Source: Erickson 2014, section 5 (one diagonal a quad).
 
 use crate::options::RouteChoice;
 use crate::plan::colouring::Colouring;

@@ -1,4 +1,6 @@
 //! The vertices that triangles use, numbered without gaps: what a mesher of points must not see more of.
+//!
+//! Source: ours.
 
 use super::request::TetRequest;
 use hexfill_geometry::Vector;

@@ -3,6 +3,8 @@
 //! Zero on a spanning forest (a gauge: every cocycle is so up to flipping vertices), then through every triangle with one unknown
 //! edge; where that is stuck an edge becomes a free symbol. Every triangle whose edges are all known gives a relation, which is
 //! mostly void.
+//!
+//! Source: Erickson 2014, section 4, says what must hold; the gauge and the symbols that make it linear are ours.
 
 use super::system::{Form, sum};
 use crate::core::complex::{TetComplex, others, tet_edge};

@@ -7,6 +7,9 @@
 //! edge off a spanning tree gives one equation in the few symbols. All passes are linear; the system is tiny.
 //! If it has no solution, the equations that clash name a cycle of odd length that bounds in T: no hex mesh exists
 //! (Thurston 1993, Mitchell 1996, Erickson 2014), and the cycle is returned as the certificate.
+//!
+//! Source: Erickson 2014, section 4 (the theorem) and section 5 (Sigma as what the hexes are dual to); the small system in place of an elimination over
+//! all edges is ours.
 
 mod classes;
 #[cfg(test)]

@@ -1,4 +1,6 @@
 //! Linear equations over Z/2 in a few symbols, with the surface edges they come from: a clash is a certificate.
+//!
+//! Source: ours; elimination over Z/2 that remembers which rows it added.
 
 use hexfill_mesh::Dart;
 use std::collections::BTreeSet;

@@ -1,4 +1,6 @@
 //! The buffer layer as hexes: cells and their points are looked up by role.
+//!
+//! Source: ours.
 
 use crate::cells::library::CellLibrary;
 use crate::cells::pattern::Pattern;

@@ -1,5 +1,7 @@
 //! Step 5: hexes. Cells and core become one hex mesh by looking up the ids of their points; nothing is glued by hashing.
 //! (The splitting of tets: Erickson 2014, figure 8.)
+//!
+//! Source: Erickson 2014, section 5 and figure 8.
 
 mod cells;
 pub(crate) mod tets;

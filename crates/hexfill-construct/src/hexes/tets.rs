@@ -4,6 +4,8 @@
 //! its lone vertex and on the side of the other two) and one a tet (two if cut). A corner hex takes all its points on
 //! the side of its vertex; a sheet hex joins the two copies round a cut edge. The pattern on a face depends on
 //! Sigma alone, so tets fit, and on the boundary it is the pattern of the inner facets (Erickson 2014, figure 8).
+//!
+//! Source: Erickson 2014, section 5 and figure 8; the tables by local numbers are ours.
 
 use crate::core::Inside;
 use crate::core::complex::{OUTWARD, TET_EDGES, TetComplex, others, tet_edge};
@@ -11,6 +13,7 @@ use crate::cut::Sigma;
 use crate::error::ConstructError;
 use crate::ids::{EdgeId, FaceId, PointId, TetId};
 use crate::layer::Layer;
+use crate::misfit::TetMisfit;
 use crate::plan::Plan;
 use hexfill_mesh::{IdVec, QuadId, VertexId};
 
@@ -38,7 +41,7 @@ fn sides(cut: &Sigma, edges: &[EdgeId; 6]) -> Option<[bool; 4]> {
     fits.then_some(side)
 }
 
-fn misfit<T>(reason: String) -> Result<T, ConstructError> {
+fn misfit<T>(reason: TetMisfit) -> Result<T, ConstructError> {
     Err(ConstructError::TetBoundary { reason })
 }
 
@@ -107,7 +110,7 @@ impl CorePoints {
                     others(i).into_iter().find(|&j| tet[j] == v)
                 });
                 let [Some(a), Some(o), Some(b)] = local else {
-                    return misfit(format!("face {} has other vertices than its triangle", f.0));
+                    return misfit(TetMisfit::OtherFace { face: f });
                 };
                 let mut set = |i: usize, j: usize, at_i: PointId, at_j: PointId, is_cut: bool| {
                     let e = complex.tet_edges[t][tet_edge(i, j)];
@@ -126,7 +129,7 @@ impl CorePoints {
                     agree &= set(i, j, here, there, layer.is_cut(dart));
                 }
                 if !agree {
-                    return misfit(format!("Sigma disagrees with the inner facet of quad {}", q.0));
+                    return misfit(TetMisfit::SigmaAtBoundary { quad: q });
                 }
             }
         }
@@ -149,7 +152,7 @@ impl CorePoints {
             // What makes the whole fit: a face's pattern is read off Sigma on its own edges, so the two tets at it
             // agree once each of them has sides at all.
             let Some(side) = sides(cut, edges) else {
-                return misfit(format!("Sigma is no surface in tetrahedron {}", t.0));
+                return misfit(TetMisfit::SigmaInside { tet: t });
             };
             for (i, &f) in complex.tet_faces[t].iter().enumerate() {
                 if self.face[f][0].is_none() {

@@ -1,5 +1,8 @@
 //! A chain of hexes between two cubes, and the boundary of the ball that all together are.
+//!
+//! Source: Erickson 2014 (odd components are paired); the chain of hexes is ours.
 
+use super::no_chain::NoChain;
 use crate::core::complex::sorted;
 use crate::ids::PointId;
 use hexfill_mesh::cube::FACETS;
@@ -19,6 +22,7 @@ pub(super) fn chain(
     let cost = |h: usize| {
         if h == first || h == last { 1 } else { 1 + 4 * hexes[h].iter().filter(|v| near.contains(v)).count() }
     };
+    // Dijkstra with ties by number of the hex, so that of equal chains always the same one is taken.
     let mut best: BTreeMap<usize, (usize, usize)> = BTreeMap::from([(first, (0, first))]);
     let mut heap = BinaryHeap::from([(std::cmp::Reverse(0), first)]);
     while let Some((std::cmp::Reverse(length), h)) = heap.pop() {
@@ -58,7 +62,7 @@ pub(super) fn ball(
     cubes: &[Vec<[PointId; 4]>; 2],
     chain: &[usize],
     hexes: &[[PointId; 8]],
-) -> Result<(QuadSurface, Vec<PointId>), String> {
+) -> Result<(QuadSurface, Vec<PointId>), NoChain> {
     let mut open: BTreeMap<[PointId; 4], [PointId; 4]> = BTreeMap::new();
     let chained = chain.iter().flat_map(|&h| FACETS.map(|f| f.map(|k| hexes[h][k])));
     for quad in cubes.iter().flatten().copied().chain(chained) {
@@ -72,13 +76,13 @@ pub(super) fn ball(
     ids.sort_unstable();
     ids.dedup();
     let local: Vec<[u32; 4]> = open.values().map(|q| q.map(|v| ids.partition_point(|&x| x < v) as u32)).collect();
-    let surface = QuadSurface::try_new(ids.len(), &local).map_err(|e| e.to_string())?;
+    let surface = QuadSurface::try_new(ids.len(), &local)?;
     // Nothing above made sure of this: it decides whether the chain may be replaced.
     if !surface.is_sphere() || !surface.n_quads().is_multiple_of(2) || !surface.reversed().is_empty() {
-        return Err("the chains found touch themselves".into());
+        return Err(NoChain::TouchesItself);
     }
     if !improper_pairs(&surface).is_empty() {
-        return Err("the chains found have quads that share too much".into());
+        return Err(NoChain::Improper);
     }
     Ok((surface, ids))
 }

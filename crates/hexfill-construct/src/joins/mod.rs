@@ -8,8 +8,11 @@
 //! Why this stays proper: the boundary of the ball consists of quads of a complex that is proper, so it is a proper
 //! surface (checked, as is that it is one sphere), and in a mesh made by the construction a hex meets the boundary in a face
 //! of one quad only.
+//!
+//! Source: Erickson 2014 (odd components are paired); the ball that is filled again is ours.
 
 mod chain;
+pub(crate) mod no_chain;
 
 use crate::cells::library::CellLibrary;
 use crate::core::complex::sorted;
@@ -25,6 +28,7 @@ use chain::{ball, chain};
 use hexfill_geometry::Vector;
 use hexfill_mesh::cube::FACETS;
 use hexfill_mesh::{Context, IdVec, QuadSurface};
+use no_chain::NoChain;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Two open cubes and their chain, to be filled.
@@ -71,7 +75,7 @@ pub(crate) fn ball_of(
     let at = |quad: &[PointId; 4]| hexes_at.get(&sorted(*quad)).and_then(|h| h.first().copied());
     let goals: BTreeSet<usize> = cubes[1].iter().filter_map(at).collect();
     let starts: BTreeSet<usize> = cubes[0].iter().filter_map(at).collect();
-    let mut reason = "no hexes of the core lie between them".to_owned();
+    let mut reason = NoChain::NoHexes;
     // A chain that touches itself or the cubes away from its ends is no ball; another pair of ends gives another
     // chain.
     for (&first, &last) in starts.iter().flat_map(|s| goals.iter().map(move |g| (s, g))) {

@@ -3,6 +3,8 @@
 //!
 //! Id ranges, in this order: the surface's own vertices, inner copies, middles of white columns, points of the
 //! edges (`e` or `ed eo`, then `x`, `y z` or `s`), points of the quads (`d`, then `f` or `fl fp` of both triangles).
+//!
+//! Source: Eppstein 1999 and Erickson 2014, section 5 (a buffer layer); numbering without hashing is ours.
 
 use crate::cells::library::CellLibrary;
 use crate::cells::pattern::{Pattern, Role, Side};

@@ -4,6 +4,8 @@
 //! Invariant of every [`Colouring`]: white vertices are independent. Columns over white vertices have two segments,
 //! and the dual surface Sigma crosses exactly the black-black edges, so a bipartite surface pays nothing for it and
 //! Erickson's original construction is the colouring that is black all over.
+//!
+//! Source: Erickson 2014 and Verhetsel et al. 2019, the two ends; the colourings between them are ours.
 
 use hexfill_mesh::{Dart, IdVec, QuadSurface, VertexId, bipartition};
 

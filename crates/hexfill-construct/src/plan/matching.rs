@@ -7,6 +7,9 @@
 //! path adds 0 or 2 to the light sides of the quads it passes (a T-join). All steps take linear time, because the
 //! search for one augmenting path visits a bounded number of quads. Why a matching: see the page
 //! `construction` of the book, step 3.
+//!
+//! Source: Tutte 1947 (a perfect matching exists), Karp and Sipser 1981 (the greedy start), Edmonds and Johnson 1973 (T-joins); their use for cells is
+//! ours.
 
 use crate::error::ConstructError;
 use crate::surface::existence::Existence;

@@ -1,5 +1,7 @@
 //! Step 1: what is decided on the surface alone: that it may have a mesh at all, its colours, and (where coordinates are wanted) its
 //! light sides.
+//!
+//! Source: Erickson 2014, section 4, and its files.
 
 pub(crate) mod colouring;
 pub(crate) mod matching;

@@ -5,6 +5,8 @@
 //! possible there. The *strain* of a vertex is its number of hexes by its solid angle. Exchanging matched and unmatched edges along
 //! short alternating cycles lowers the sum of a high power of the strains. Measured on Schneiders' pyramid: the worst
 //! scaled Jacobian of an embedding follows the largest strain (see `record/`).
+//!
+//! Source: ours; measured in `record/construct-2026-11-21.md`.
 
 use super::matching::LightSides;
 use crate::cells::library::CellLibrary;
@@ -106,6 +108,7 @@ impl Strain<'_> {
             let d = Dart::new(lost, k);
             let across = self.surface.twin(d);
             let other = across.quad();
+            // The lost quad needs a mate other than the one it had.
             if d == before || other == lost {
                 continue;
             }
@@ -120,6 +123,7 @@ impl Strain<'_> {
                 if self.cost < bound {
                     return true;
                 }
+                // Both ends get back the side they had.
                 self.set_light(first);
                 self.set_light(before);
             } else if path.len() < self.cycle && !path.contains(&other) {
@@ -161,6 +165,8 @@ pub(crate) fn relieve(
     }
     let n = surface.n_quads();
     let darts = |q: usize| (0..4).map(move |k| Dart::new(QuadId::new(q), k));
+    // One light side a quad: a perfect matching of the dual graph. Exchanging along an alternating cycle keeps it
+    // perfect, so hexes stay as few as they are.
     let light = (0..n).filter_map(|q| darts(q).find(|&d| sides.light[d])).collect();
     let mut strain = Strain {
         surface,
@@ -179,6 +185,7 @@ pub(crate) fn relieve(
         let mut improved = false;
         for start in strain.light.ids() {
             let mate = surface.twin(strain.light[start]).quad();
+            // Each matched pair once.
             if mate <= start {
                 continue;
             }

@@ -1,6 +1,8 @@
 //! Step 6: start positions. Every buffer cube is the trilinear image of its cell's template, the core's points are
 //! means of the tets' corners. What an embedding then has to do is local. (Ours; book, page `construction`, "From topology to
 //! geometry".)
+//!
+//! Source: ours.
 
 use crate::cells::library::CellLibrary;
 use crate::cells::template::{CORNERS, template};

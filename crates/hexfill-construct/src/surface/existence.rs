@@ -3,10 +3,13 @@
 //! Thurston 1993, Mitchell 1996, Erickson 2014: a quad surface bounds a hex mesh of its interior iff the number of
 //! quads is even and no odd cycle of edges bounds in the interior (Z/2-homology). A proper one needs moreover
 //! that two quads share nothing, a vertex or an edge. Which cycles bound is read off linking numbers.
+//!
+//! Source: Thurston 1993, Mitchell 1996; Erickson 2014, section 4, for any genus. Reading it off linking numbers is ours.
 
 use super::linking::{Linking, LinkingError, linking};
 use super::nesting::solids;
 use super::polygons::Darts;
+use super::undecided::Undecided;
 use crate::missing::MissingInterior;
 use hexfill_mesh::{Context, Edge, ImproperPair, Offenders, QuadId, QuadSurface, bipartition, improper_pairs};
 use std::collections::BTreeSet;
@@ -48,7 +51,7 @@ pub enum Existence {
     /// Depends on the interior, which is not known.
     Unknown {
         /// What is missing.
-        reason: String,
+        reason: Undecided,
     },
 }
 
@@ -86,7 +89,7 @@ impl fmt::Display for Existence {
                     pairs.count
                 )
             }
-            Self::Unknown { reason } => f.write_str(reason),
+            Self::Unknown { reason } => reason.fmt(f),
         }
     }
 }
@@ -116,15 +119,12 @@ fn odd_solid(surface: &QuadSurface, points: Option<&[[f64; 3]]>) -> Option<Exist
     if size.iter().all(|s| s.is_multiple_of(2)) {
         return None;
     }
-    let unknown = |reason: String| Some(Existence::Unknown { reason });
+    let unknown = |reason: Undecided| Some(Existence::Unknown { reason });
     let Some(points) = points else {
-        return unknown(
-            "some components have odd numbers of quads; positions are needed to see which of them bound one solid"
-                .into(),
-        );
+        return unknown(Undecided::OddComponents);
     };
     if points.len() < surface.n_vertices() || !points.iter().flatten().all(|x| x.is_finite()) {
-        return unknown(MissingInterior::PositionsMissing.to_string());
+        return unknown(MissingInterior::PositionsMissing.into());
     }
     let mut triangles = Vec::with_capacity(2 * surface.n_quads());
     let mut component = Vec::with_capacity(2 * surface.n_quads());
@@ -134,7 +134,7 @@ fn odd_solid(surface: &QuadSurface, points: Option<&[[f64; 3]]>) -> Option<Exist
         component.extend([surface.component(QuadId::new(q)); 2]);
     }
     match solids(&triangles, &component, size.len(), points) {
-        Err(reason) => unknown(reason.to_string()),
+        Err(reason) => unknown(reason.into()),
         Ok(solids) => solids.into_iter().find_map(|components| {
             let given: usize = components.iter().map(|&c| size[c]).sum();
             (!given.is_multiple_of(2)).then_some(Existence::OddSolid { components, given })
@@ -170,15 +170,13 @@ pub fn existence(surface: &QuadSurface, points: Option<&[[f64; 3]]>) -> Existenc
         return Existence::Exists { because: "an even number of quads and no odd cycle" };
     }
     let Some(points) = points else {
-        return Existence::Unknown {
-            reason: "the surface has odd cycles; positions are needed to see which of them bound inside".into(),
-        };
+        return Existence::Unknown { reason: Undecided::OddCycles };
     };
     let s = Darts::of_surface(surface);
     let l = match linking(&s, points, &Context::default()) {
         Ok(l) => l,
-        Err(LinkingError::Undecided(reason)) => return Existence::Unknown { reason: reason.to_string() },
-        Err(LinkingError::Stopped(reason)) => return Existence::Unknown { reason: format!("stopped: {reason:?}") },
+        Err(LinkingError::Undecided(reason)) => return Existence::Unknown { reason: reason.into() },
+        Err(LinkingError::Stopped(reason)) => return Existence::Unknown { reason: Undecided::Stopped(reason) },
     };
     odd_cycle_inside(&s, &l)
         .map_or(Existence::Exists { because: "an even number of quads, and no odd cycle bounds inside" }, |cycle| {

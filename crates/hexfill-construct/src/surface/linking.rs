@@ -6,6 +6,8 @@
 //! The numbers come from Gauss's integral in closed form for straight segments (Klenin and Langowski 2000), rounded;
 //! they are believed only if they are near whole numbers and the matrix has what theory demands: L - L^T, the
 //! intersection form, is invertible over Z (checked modulo 2 and modulo an odd prime).
+//!
+//! Source: Klenin and Langowski 2000, method 1a (the integral), Hatcher 2002, theorem 3.44 (Alexander duality); the test of the matrix is ours.
 
 use super::polygons::{DartId, Darts, TreeCotree, tree_cotree, tree_loop};
 use crate::missing::MissingInterior;
@@ -71,6 +73,8 @@ pub(crate) fn linking(s: &Darts, points: &[Vector], ctx: &Context<'_>) -> Result
                     sum += gauss(a, b, line[k], line[(k + 1) % line.len()]);
                 }
             }
+            // Gauss's integral of two loops that stay apart is a whole number. Far from one, the loops touch or
+            // nearly do: then nothing here may be believed, and that is said rather than guessed.
             if (sum - sum.round()).abs() > 0.05 {
                 return Err(failed(MissingInterior::LinkingNotWhole));
             }
@@ -79,6 +83,8 @@ pub(crate) fn linking(s: &Darts, points: &[Vector], ctx: &Context<'_>) -> Result
     }
     let n = loops.len();
     let form: Vec<Vec<i64>> = (0..n).map(|i| (0..n).map(|j| numbers[i][j] - numbers[j][i]).collect()).collect();
+    // Over the rationals a rank is at least that modulo a prime: two primes, one of which the answer is about, catch
+    // what rounding may have spoilt.
     for p in [2, 1_000_003] {
         if rank(&form, p) != n {
             return Err(failed(MissingInterior::LinkingAgainstIntersections));

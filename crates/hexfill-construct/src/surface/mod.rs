@@ -5,3 +5,4 @@ pub(crate) mod existence;
 pub(crate) mod linking;
 pub(crate) mod nesting;
 pub(crate) mod polygons;
+pub(crate) mod undecided;

@@ -2,6 +2,8 @@
 //!
 //! A component lies inside another iff the other winds round one of its vertices ([`holders`]). At even depth it is the outside
 //! of a solid, at odd depth a cavity of the solid round it; outsides must face outward (positive volume), cavities the other way.
+//!
+//! Source: van Oosterom, Strackee 1983 (winding numbers); levels by parity are ours.
 
 use crate::missing::MissingInterior;
 use hexfill_geometry::{Vector, det, holders, sub};
@@ -21,6 +23,7 @@ pub(crate) fn solids(
     for (t, &c) in triangles.iter().zip(component) {
         parts[c].push(t.map(|v| points[v.index()]));
     }
+    // From a corner of its own: far from the origin the products would lose the digits that decide the sign.
     let volume = |part: &[[Vector; 3]]| -> f64 {
         let from_origin = part.iter().map(|t| t.map(|p| sub(p, part[0][0])));
         from_origin.map(|[a, b, c]| det(a, b, c)).sum()
@@ -35,6 +38,7 @@ pub(crate) fn solids(
         solid_of[c] = solids.len();
         solids.push(vec![c]);
     }
+    // Second pass: a cavity may have a smaller number than the solid it is in.
     for c in (0..n_components).filter(|&c| !around[c].len().is_multiple_of(2)) {
         if volume(&parts[c]) >= 0.0 {
             return Err(MissingInterior::CavityFacesOutward { component: c });

@@ -1,6 +1,8 @@
 //! A closed oriented surface of `k`-gons as darts, and its tree-cotree decomposition: the 2 g edges whose
 //! fundamental loops are a basis of the first homology (Eppstein 2003, "Dynamic generators of topologically
 //! embedded graphs"). Used for quads and for triangles.
+//!
+//! Source: Eppstein 2003 (tree and cotree).
 
 use hexfill_mesh::{IdVec, QuadSurface, VertexId, id_type};
 

@@ -3,6 +3,8 @@
 //! In a valid mesh of a surface that does not cross itself the corners at a boundary vertex tile its solid angle, and
 //! those at a boundary edge its dihedral angle. So some corner has at most the mean of either, and the determinant of three unit vectors is
 //! bounded by the angles they span.
+//!
+//! Source: ours.
 
 use hexfill_geometry::{Vector, dihedral_angle};
 use std::collections::BTreeMap;
@@ -42,6 +44,7 @@ pub(super) fn angle_bound(corners: &[[u32; 3]], direction: impl Fn(u32) -> Optio
     if n_rim != rim.len() || n_rim < 3 {
         return 1.0;
     }
+    // The area of a spherical polygon by its angles (Girard).
     let solid = sum - (n_rim as f64 - 2.0) * PI;
     let share = solid / corners.len() as f64;
     if solid > 1e-9 && share < FRAC_PI_2 {

@@ -8,6 +8,8 @@
 //!
 //! The first is met at the inner corners of a pillow under a cubed sphere, and there only in the limit of a vanishing star:
 //! who does not know this bound shrinks edges without end.
+//!
+//! Source: ours; that concave functions make equal shares best is Jensen's inequality.
 
 use super::angle_bound::equilateral;
 use crate::problem::{FIXED, Problem};

@@ -7,6 +7,8 @@
 //! | `angle_bound` | solid and dihedral angles shared by corners |
 //! | `interior_bound` | how many hexes are round an interior vertex or edge |
 //! | `surface_limits` | what a surface allows before there is a mesh |
+//!
+//! Source: ours; each file names what it builds on.
 
 mod angle_bound;
 mod interior_bound;

@@ -1,6 +1,8 @@
 //! [`Piece`]: a part of the unit sphere in which a direction is looked for.
 //!
 //! Pieces are spherical triangles, halved at their longest side, inside caps; the largest value of a linear function on a cap has a closed form.
+//!
+//! Source: ours.
 
 use hexfill_geometry::{Vector, add, cross, dot, midpoint, norm, scale, sub, unit};
 

@@ -1,6 +1,8 @@
 //! Good directions for a star: linear programs in trust regions from some starts.
 //!
 //! What is returned is attained; that nothing is better is for [`super::star_search`] to say.
+//!
+//! Source: Madsen 1975 (a max-min problem by linear programs in a trust region).
 
 use super::sphere_piece::Piece;
 use super::star_directions::Directions;
@@ -27,6 +29,8 @@ pub(super) fn climb(star: &Directions, hint: &[Vector], enough: f64) -> (f64, Ve
                 break;
             }
             let cells: Vec<Piece> = u.iter().map(|&centre| Piece::around(centre, radius)).collect();
+            // Of first order only: the true value judges the step, so a poor model costs an iteration and nothing
+            // else.
             let Some(step) = solve(star, &cells, Order::First) else { break };
             let reached = star.worst(&step.directions);
             if reached > value {

@@ -2,6 +2,8 @@
 //!
 //! Every corner is the determinant of three directions, linear in each of them. With `u = c + d` it is its value at the centres c, plus a part linear in the
 //! d, plus `p . (d_j x d_k)` for each pair of free directions in it, plus the determinant of three d.
+//!
+//! Source: ours.
 
 use hexfill_geometry::{Ray, Vector, det, scale};
 

@@ -2,6 +2,8 @@
 //!
 //! It maximises t with `t <= value + gradient . d (+ terms of higher order)` for every corner, `d` within the pieces (as boxes
 //! round the caps).
+//!
+//! Source: Madsen 1975; the bounds on terms of higher order are ours.
 
 use super::sphere_piece::Piece;
 use super::star_directions::Directions;
@@ -67,6 +69,8 @@ pub(super) fn solve(star: &Directions, pieces: &[Piece], order: Order) -> Option
         unit(u).unwrap_or([0.0, 0.0, 1.0])
     };
     let directions = (0..star.n_free).map(direction).collect();
+    // The multipliers of the corners' rows: as good as any weights for the bound, and small negative ones are the
+    // solver's rounding.
     let weights = solution.multipliers[..n_rows].iter().map(|m| m.max(0.0)).collect();
     Some(Step { directions, weights })
 }

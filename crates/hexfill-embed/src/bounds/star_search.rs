@@ -7,6 +7,8 @@
 //! with `g`, `p`, `q` the weighted coefficients; the maximum over a spherical cap has a closed form. This holds whatever the weights are; good ones
 //! are the multipliers of a small linear program. The error is of second order in the radii, so the search converges fast, and the largest bound of the open nodes is
 //! an upper bound of the star whenever one stops (up to rounding of some 1e-14).
+//!
+//! Source: ours; branch and bound with Lagrange multipliers as weights.
 
 use super::sphere_piece::Piece;
 use super::star_directions::Directions;

@@ -9,6 +9,8 @@
 //!   (`hexfill-shell`, split stars).
 //!
 //! Angles are seen from the vertex itself, along edges, as Jacobians are. All in floating point: nothing here is a proof.
+//!
+//! Source: ours.
 
 use crate::serial::{serialize_edge, serialize_quad, serialize_vertex};
 use hexfill_geometry::{Vector, add, best_direction, corner_angle, cross, dihedral_angle, direction, scale};

@@ -9,6 +9,8 @@
 //! ([`super::star_search`]) where that can lower the least bound of the mesh.
 //!
 //! A second bound counts angles: see [`super::angle_bound`].
+//!
+//! Source: ours; the closed form is Wolfe 1976 (see `hexfill_geometry::best_direction`).
 
 use super::angle_bound::angle_bound;
 use super::star_climb::climb;

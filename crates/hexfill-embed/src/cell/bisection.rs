@@ -4,6 +4,8 @@
 //! values, hence bounds from the other side. The Bernstein bounds converge quadratically, so few boxes are cut.
 //!
 //! These are judgements in floating point, used to steer and to report; proofs are the business of `hexfill-check`.
+//!
+//! Source: Johnen, Weill, Remacle 2017.
 
 use super::frame::{Frame, MIXED};
 use hexfill_geometry::Vector;

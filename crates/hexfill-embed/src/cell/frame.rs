@@ -6,6 +6,8 @@
 //! (Johnen, Weill, Remacle 2017, arXiv 1706.01613), and all of them positive implies det J > 0 on the whole box, as the basis is positive.
 //! With N the same averages of the products of edge lengths, `B >= t N` and `t >= 0` imply that the scaled
 //! Jacobian is at least `t` on the whole box, because a length is a convex function of the interpolated vectors.
+//!
+//! Source: Johnen, Weill, Remacle 2017; the row for the scaled Jacobian is ours.
 
 use hexfill_geometry::{Vector, cross, det, dot, midpoint, norm, sub};
 

@@ -2,6 +2,8 @@
 //!
 //! For `s = det(u1, u2, u3)` with unit vectors `u = c / |c|`: across two columns the derivative of the cross product,
 //! within one column, with `n = u_l x u_m`, `-(n u' + u n') - s (I - 3 u u')` over `|c|^2`.
+//!
+//! Source: ours; calculus.
 
 use hexfill_geometry::{Vector, cross, det, norm, scale};
 
@@ -17,6 +19,8 @@ pub(crate) fn hessian(c: &[Vector; 3]) -> Matrix9 {
     for k in 0..3 {
         let (l, m) = ((k + 1) % 3, (k + 2) % 3);
         let n = cross(u[l], u[m]);
+        // Lengths do not count, so the derivative along a column vanishes: directions are projected, and curvature
+        // falls with the square of the length.
         let within = 1.0 / (length[k] * length[k]);
         for a in 0..3 {
             for b in 0..3 {
@@ -67,6 +71,8 @@ pub(crate) fn positive_part(matrix: &Matrix9) -> Matrix9 {
                 if a[p][q] == 0.0 {
                     continue;
                 }
+                // The smaller of the two rotations that make the entry vanish; `hypot` keeps it finite whatever the
+                // scales.
                 let theta = 0.5 * (a[q][q] - a[p][p]) / a[p][q];
                 let t = theta.signum() / (theta.abs() + theta.hypot(1.0));
                 let c = 1.0 / t.hypot(1.0);
@@ -85,6 +91,7 @@ pub(crate) fn positive_part(matrix: &Matrix9) -> Matrix9 {
     }
     let mut out = [[0.0; 9]; 9];
     for k in 0..9 {
+        // Nearest in the Frobenius norm: the eigenvectors stay, negative values go.
         let value = a[k][k].max(0.0);
         for i in 0..9 {
             for j in 0..9 {

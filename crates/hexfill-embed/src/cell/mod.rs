@@ -1,4 +1,6 @@
 //! One cell: its Jacobian, what is known of it on the whole cell, and measures at a point.
+//!
+//! Source: Johnen, Weill, Remacle 2017 for the Bernstein form.
 
 pub(crate) mod bisection;
 pub(crate) mod condition;

@@ -4,6 +4,8 @@
 //! s above the level t and pulls at those below t + w only, the worst most; so good cells stay where they are. A scaled Jacobian does not know
 //! lengths, so short edges have a barrier of their own ([`EdgeFloors`]). L-BFGS minimises (interior-point methods solve max-min problems
 //! in this way, the level following the worst value: Fiacco and McCormick 1968).
+//!
+//! Source: Fiacco, McCormick 1968.
 
 use super::edge_floors::EdgeFloors;
 use crate::cell::frame::{CORNER_MIXED, FRAME_EDGES, Frame, MIXED};
@@ -138,6 +140,8 @@ impl Barrier<'_> {
             // and pairs remembered from before mislead.
             let diagonal = self.inverse_diagonal(points);
             let before = rows.iter().map(|row| row.0).sum::<f64>();
+            // Each hex writes its own row and each variable sums its rows in a fixed order, so that threads do not
+            // change a bit of the gradient.
             let found = minimise(
                 &mut x,
                 &diagonal,
@@ -170,6 +174,7 @@ impl Barrier<'_> {
         let mut gradient = [[0.0; 3]; 8];
         let frame = Frame::new(&p);
         self.floors.add(&self.problem.hexes[hex], &frame, &mut value, &mut gradient);
+        // Twelve edges serve eight corners: each length is taken once.
         let inverse_length = frame.0.map(|d| d.map(|e| 1.0 / norm(e)));
         let end = self.level + self.width;
         for Corner { ends, edges } in self.penalty.corners() {
@@ -192,6 +197,8 @@ impl Barrier<'_> {
                 }
             }
         }
+        // Inside a cell a value may be below those at all corners; points where that was seen are kept above the
+        // level as well.
         for &at in &self.inner[hex] {
             let weights = weights_at(at);
             let Some((s, g)) = scaled_with_gradient(&columns(&p, &weights)) else { return (f64::INFINITY, gradient) };

@@ -1,6 +1,8 @@
 //! Many patches at a time: each is worked on from the same points, and what got better is written back.
 //!
 //! Patches share no cell, so the results do not depend on each other; they are written back in the order of the patches, whatever the threads did.
+//!
+//! Source: ours.
 
 use crate::problem::Patch;
 use crate::quality::Verdict;

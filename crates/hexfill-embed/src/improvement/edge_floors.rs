@@ -3,6 +3,8 @@
 //! A scaled Jacobian does not know lengths, and the best of a star is sometimes reached in the limit of a vanishing one only (four
 //! hexes at a vertex behind a pillow, see [`crate::bounds`]), so whoever raises nothing else shrinks edges without end. Here an edge resists once it is
 //! shorter than half of the shortest that its vertices had: a barrier, 0 from there on and infinite at a quarter.
+//!
+//! Source: ours.
 
 use crate::cell::frame::{FRAME_EDGES, Frame};
 use crate::problem::{Patch, Problem};

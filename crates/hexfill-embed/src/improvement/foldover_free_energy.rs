@@ -6,6 +6,8 @@
 //! With eps > 0 it is finite on inverted terms and pulls them right; as eps falls to 0 it becomes a barrier.
 //! A hex starts with the eight corner terms; any of the 64 mixed determinants of its Bernstein form can be added,
 //! and with all of them positive det J is positive in the whole cell.
+//!
+//! Source: Garanzha et al. 2021; the mixed determinants as further terms are ours, after Johnen, Weill, Remacle 2017.
 
 use crate::cell::frame::{BOTTOM_CORNERS, CORNERS, FRAME_EDGES, Frame, MIXED, PYRAMID_EDGES};
 use crate::problem::Problem;
@@ -28,7 +30,11 @@ pub(crate) struct Energy<'p> {
 
 /// `chi(e, D)`, without cancellation for negative D.
 pub(crate) fn chi(epsilon: f64, d: f64) -> f64 {
-    let root = epsilon.hypot(d);
+    chi_with(epsilon, d, epsilon.hypot(d))
+}
+
+/// [`chi`] given `sqrt(e^2 + D^2)`, which takes longest.
+fn chi_with(epsilon: f64, d: f64, root: f64) -> f64 {
     // For d << 0 the sum d + root cancels to nothing; the other form is the same number with the root in the
     // denominator.
     if d > 0.0 { 0.5 * (d + root) } else { 0.5 * epsilon * epsilon / (root - d) }
@@ -146,14 +152,15 @@ fn hex_energy(p: &[Vector; 8], terms: u64, size: f64, epsilon: f64, volume_weigh
         let trace = (dot(e1, e1) + dot(e2, e2) + dot(e3, e3)) / 3.0;
         let n1 = cross(e2, e3);
         let d = dot(e1, n1);
-        let x = chi(epsilon, d);
+        let hypotenuse = epsilon.hypot(d);
+        let x = chi_with(epsilon, d, hypotenuse);
         let root = trace.sqrt();
         let f = root * trace / x;
         let volume = volume_weight * 0.5 * (d * d + 1.0) / x;
         value += f + volume;
         // d chi / d D = chi / sqrt(e^2 + D^2).
         let along_edge = root / x;
-        let along_det = -(f + volume) / epsilon.hypot(d) + volume_weight * d / x;
+        let along_det = -(f + volume) / hypotenuse + volume_weight * d / x;
         let g = &mut edge_gradient;
         for (slot, e, normal) in [((0, a), e1, n1), ((1, b), e2, cross(e3, e1)), ((2, c), e3, cross(e1, e2))] {
             let row = &mut g[slot.0][slot.1];

@@ -1,4 +1,6 @@
 //! Meshes too large for the ways of small ones: barriers on patches do nearly all, and programs in small patches loosen what holds them back.
+//!
+//! Source: ours; measured in `record/embed-2026-11-21.md`.
 
 use super::edge_floors::EdgeFloors;
 use super::patch_barriers::{lift_poor_cells, visits};

@@ -5,6 +5,8 @@
 //! cells are good, and the patches are independent. A patch is written back only if its worst value over
 //! whole cells rose, as judged by bisection. Then tau is raised, as long as the worst value follows. All bounds are counts, so
 //! the result does not depend on the machine or the threads; the work is about linear in the number of poor cells.
+//!
+//! Source: ours, with the barriers of Fiacco, McCormick 1968.
 
 use super::barrier::{Barrier, Descent, Penalty};
 use super::edge_floors::EdgeFloors;
@@ -107,7 +109,7 @@ pub(crate) fn lift_poor_cells(
         let parts = patches(problem, incidence, &seeds, pace.rings);
         let size: usize = parts.iter().map(|part| part.problem.hexes.len()).sum();
         context.report("lift", pass as u64, None, || {
-            format!("worst {worst:.6}, {} cells below {tau:.4}, {} patches of {size} cells", seeds.len(), parts.len())
+            format!("worst scaled Jacobian {worst:.6}, {} hexes to be lifted above {tau:.4}", seeds.len())
         });
         // A bound on work and not on time, or the result would depend on the machine.
         if size > *visits {

@@ -1,4 +1,6 @@
 //! Linear programs in patches round the worst cells, for meshes too large for one program.
+//!
+//! Source: ours, with the programs of Madsen 1975.
 
 use super::each_patch::improve_each;
 use super::goal::Goal;
@@ -13,6 +15,10 @@ const CLIMB_CELLS: usize = 200;
 
 /// Cells in a patch round a single cell at most.
 const LONE_CELLS: usize = 1200;
+
+/// Variables of all patches of more than [`CLIMB_CELLS`] cells together: enough for a dozen of them. A boundary that holds a cell near
+/// its worst value whatever lies round it takes more for each hundredth of it (900 quads at random take 5,600).
+const LARGE_VARIABLES: usize = 6000;
 
 /// Whether the worst cells are few: then patches round them are quicker than barriers over the whole mesh.
 pub(crate) fn is_worst_isolated(problem: &Problem, points: &[Vector]) -> bool {
@@ -66,7 +72,7 @@ pub(crate) fn climb_worst(
     rounds: usize,
     context: &Context<'_>,
 ) -> Option<StopReason> {
-    let mut stale = 0;
+    let (mut stale, mut large_variables) = (0, 0);
     for round in 0..rounds {
         if let Some(reason) = context.stop() {
             return Some(reason);
@@ -78,9 +84,18 @@ pub(crate) fn climb_worst(
         // Where a round gains nothing the next has larger patches: what held the worst cells may lie a ring further
         // out.
         let (seeds, parts) = patches_round_worst(problem, incidence, &cells, target, 1 + stale)?;
+        let large = parts.iter().filter(|p| p.problem.hexes.len() > CLIMB_CELLS);
+        let wanted = large.map(|p| p.problem.n_variables()).sum::<usize>();
+        let is_spent = wanted > 0 && large_variables > LARGE_VARIABLES;
         context.report("optimise patches", round as u64, Some(rounds as u64), || {
-            format!("worst {:.6}, {seeds} cells in {} patches", cells.worst, parts.len())
+            let spent = if is_spent { ", what large patches may cost is spent" } else { "" };
+            format!("worst scaled Jacobian {:.6}, {seeds} hexes to be raised{spent}", cells.worst)
         });
+        if is_spent {
+            return None;
+        }
+        large_variables += wanted;
+        // A patch sees everything its vertices can spoil, so what is better in it is not worse outside.
         improve_each(&parts, points, context, |part, points, context| {
             let limits = ProgramLimits { iterations: 25, band: 0.2, tolerance: 1e-6 };
             climb(&part.problem, points, Goal::ScaledJacobian { target }, limits, context);

@@ -1,4 +1,6 @@
 //! The rows of a program: quantities near the worst with their gradients, and what keeps cells positive.
+//!
+//! Source: ours; the rows that keep cells positive are those of Johnen, Weill, Remacle 2017.
 
 use super::goal::Goal;
 use crate::cell::condition::log_condition_with_gradient;

@@ -3,6 +3,8 @@
 //! Variables are `d / (radius * reach)` in [-1, 1], one for each of the problem, and `t - value`. With multipliers given, `d' H d / 2` is taken off, H minus
 //! their sum of the second derivatives: the Lagrangian's model of sequential quadratic programming (Wilson 1963; Nocedal and Wright 2006,
 //! chapter 18), each summand made convex so that the program is.
+//!
+//! Source: Wilson 1963; Nocedal, Wright 2006, chapter 18.
 
 use super::goal::Goal;
 use super::program_rows::{Place, Row, guards};
@@ -122,9 +124,12 @@ fn bend(problem: &Problem, points: &[Vector], place: Place, multiplier: f64, mut
     let hex = &problem.hexes[place.hex];
     let weights = weights_at(place.at);
     let c = columns(&problem.corners_of(place.hex, points), &weights);
+    // A column without length: the measure has no derivative there.
     if scaled(&c) <= -1.0 {
         return;
     }
+    // One place at a time: a sum of convex terms is convex, while the sum of the true Hessians need not be, and the
+    // solver takes convex programs only.
     let h = positive_part(&hessian(&c).map(|r| r.map(|x| -multiplier * x)));
     let movable: Vec<(usize, usize)> = (0..8)
         .filter(|&corner| weights[corner] != [0.0; 3])

@@ -4,6 +4,8 @@
 //! the logarithmic [`Barrier`] is minimised, then its level follows the worst value; the distance to it and the width shrink when nothing is
 //! gained (a logarithmic barrier method with a moving constraint: Fiacco and McCormick 1968).
 //! Invariant: a step counts only if the worst value over whole cells rises, as judged by bisection, so validity is never traded for corners.
+//!
+//! Source: Fiacco, McCormick 1968.
 
 use super::barrier::{Barrier, Descent, Penalty};
 use super::edge_floors::EdgeFloors;
@@ -56,7 +58,7 @@ pub(crate) fn follow_worst(
             return None;
         }
         context.report("optimise", round as u64, Some(limits.rounds as u64), || {
-            format!("worst scaled Jacobian {worst:.6}, width {}, gap {gap:.3}", WIDTHS[level])
+            format!("worst scaled Jacobian {worst:.6}, at best {target:.6}")
         });
         let width = WIDTHS[level];
         // The level stays below the worst by a share of the width, or of the worst itself.

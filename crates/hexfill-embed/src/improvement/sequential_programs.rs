@@ -6,6 +6,8 @@
 //! program gives the step. A step is taken only if the true worst value over whole cells improves and every cell
 //! stays positive, so validity is never traded for corners: the worst value of a cell comes from bisection, and the points
 //! where it was seen become rows of the next program.
+//!
+//! Source: Madsen 1975; Fletcher 1987, chapter 14.
 
 use super::goal::Goal;
 use super::program_rows::{Place, linearise};
@@ -50,6 +52,7 @@ pub(crate) fn climb(
     let mut climber = Climber::new(problem, points, goal, limits);
     let mut iterations = 0;
     let mut stopped = None;
+    // Below the smallest radius steps are rounding.
     while iterations < limits.iterations && climber.radius > 1e-9 && problem.n_variables() > 0 {
         // On the way cells are judged with a coarse error; whether the target is reached is not for such a value to
         // say.
@@ -66,9 +69,9 @@ pub(crate) fn climb(
         iterations += 1;
         let before = climber.value;
         match climber.step(points) {
-            Turn::Moved => context.report("optimise", iterations as u64, Some(limits.iterations as u64), || {
-                format!("{goal:?}, now {before:.6}")
-            }),
+            Turn::Moved => {
+                context.report("optimise", iterations as u64, Some(limits.iterations as u64), || goal.progress(before))
+            }
             Turn::Again => {}
             Turn::End => break,
         }
@@ -140,6 +143,7 @@ impl<'p> Climber<'p> {
         let curvature = if self.curved { self.multipliers.as_slice() } else { &[] };
         let model = Model { problem, points, goal: self.goal, value: self.value, radius: self.radius };
         let Some(step) = solve(&model, &rows, curvature) else {
+            // The solver gave up, mostly on a model that is too curved for its region: a smaller one, and linear.
             self.radius *= 0.25;
             self.curved = false;
             return Turn::Again;
@@ -166,6 +170,7 @@ impl<'p> Climber<'p> {
         let reached = merit(problem, &trial, &cells, self.goal);
         let gain = reached - self.value;
         self.multipliers = step.multipliers;
+        // Trust region: what was promised against what came decides how far the next model is believed.
         self.learn(gain, step.promised);
         // By the true worst over whole cells, never by the model: no step can trade validity for corners.
         if gain > 0.0 {

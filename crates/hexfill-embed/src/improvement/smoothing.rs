@@ -3,6 +3,8 @@
 //! Damped Jacobi iteration for the graph Laplacian, each edge weighted by the hexes round it. It takes off what changes from cell to cell, and leaves the
 //! shape at large as it is (the smoother of multigrid methods: Briggs, Henson and McCormick 2000, chapter 2): in a grid, what changes sign along all
 //! axes falls to a third a sweep. Without damping it would only change its sign.
+//!
+//! Source: Briggs, Henson, McCormick 2000, chapter 2.
 
 use crate::problem::Problem;
 use crate::solvers::long_vectors::fill;

@@ -5,6 +5,8 @@
 //! with F before and F' after a minimisation, `sigma = max(1 - F'/F, 1/10)`, `mu = (1 - sigma) chi(eps, Dmin)`, and the
 //! next eps is `2 sqrt(mu (mu - Dmin))` while `Dmin < mu`, else tiny. When all terms are positive the cells are put
 //! to the Bernstein test, and the mixed determinants of the cells that fail it join the energy.
+//!
+//! Source: Garanzha et al. 2021; the Bernstein test at the end is ours, after Johnen, Weill, Remacle 2017.
 
 use super::foldover_free_energy::{Energy, chi};
 use crate::cell::bisection::Sign;
@@ -14,6 +16,14 @@ use crate::quality::WORKING_BOXES;
 use crate::solvers::lbfgs::{Limits, minimise};
 use hexfill_geometry::{Vector, det};
 use hexfill_mesh::{Context, StopReason};
+
+/// One bad cell in so many is too many to hope for the rest.
+const HOPELESS: usize = 20;
+
+/// Whether too many cells are bad.
+pub(crate) fn is_hopeless(n_bad: usize, problem: &Problem) -> bool {
+    HOPELESS * n_bad > problem.hexes.len()
+}
 
 /// How long to try.
 #[derive(Clone, Copy, Debug)]
@@ -26,6 +36,8 @@ pub(crate) struct UntangleLimits {
     pub(crate) total: usize,
     /// Rounds to go on once everything is positive: further shape improvement.
     pub(crate) extra_rounds: usize,
+    /// Give up after so many rounds if more than one cell in [`HOPELESS`] still has a corner that is not positive.
+    pub(crate) late: usize,
     /// Give up after so many rounds with neither fewer bad cells nor a better smallest determinant.
     pub(crate) patience: usize,
     /// Weight of the volume term of the energy.
@@ -35,7 +47,15 @@ pub(crate) struct UntangleLimits {
 impl UntangleLimits {
     /// The usual limits, shapes only.
     pub(crate) const fn new() -> Self {
-        Self { rounds: 100, iterations: 200, total: usize::MAX, extra_rounds: 0, patience: 15, volume_weight: 0.0 }
+        Self {
+            rounds: 100,
+            iterations: 200,
+            total: usize::MAX,
+            extra_rounds: 0,
+            late: usize::MAX,
+            patience: 15,
+            volume_weight: 0.0,
+        }
     }
 }
 
@@ -61,7 +81,7 @@ pub(crate) fn untangle(
         let (after, stopped) = minimise_energy(&mut energy, &mut x, points, limits, &mut spent, context);
         smallest = energy.smallest_determinant(points);
         context.report("untangle", round as u64, Some(limits.rounds as u64), || {
-            format!("smallest determinant {smallest:.3e} at eps {:.3e}", energy.epsilon)
+            format!("smallest determinant {smallest:.3e}, valid when positive")
         });
         // Positive terms are positive corners; the Bernstein form says whether the cells are positive inside, too.
         if smallest > 0.0 {
@@ -77,7 +97,9 @@ pub(crate) fn untangle(
         if stopped.is_some() {
             return stopped;
         }
-        if spent >= limits.total || progress.is_stale(energy.n_not_positive(), smallest) {
+        let n_bad = energy.n_not_positive();
+        let is_hopeless = round + 1 >= limits.late && is_hopeless(n_bad, problem);
+        if spent >= limits.total || is_hopeless || progress.is_stale(n_bad, smallest) {
             break;
         }
         energy.epsilon = next_epsilon(energy.epsilon, smallest, before, after);

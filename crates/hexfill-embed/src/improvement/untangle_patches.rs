@@ -2,10 +2,12 @@
 //!
 //! Cells that fail are seeds of patches; each patch is untangled alone with its surroundings held.
 //! Patches grow from round to round until nothing fails, and the whole mesh is the last patch.
+//!
+//! Source: ours, with the energy of Garanzha et al. 2021.
 
 use super::each_patch::improve_each;
 use super::smoothing::smooth;
-use super::untangle::{UntangleLimits, untangle};
+use super::untangle::{UntangleLimits, is_hopeless, untangle};
 use crate::problem::{Incidence, Problem, patches};
 use crate::quality::bad_cells;
 use hexfill_geometry::Vector;
@@ -16,6 +18,11 @@ const WHOLE_WORK: usize = 50_000_000;
 
 /// Meshes with more hexes than this get the first energy only.
 const ONE_ENERGY: usize = 5000;
+
+/// On meshes of more hexes than this neither energy goes on where it is hopeless: some seconds each, in vain.
+const COSTLY: usize = 800;
+/// Rounds after which that shows.
+const LATE: usize = 20;
 
 /// In meshes with more hexes than this noise is smoothed away before anything is untangled,
 const SMOOTHED: usize = 20_000;
@@ -104,18 +111,20 @@ pub(crate) fn untangle_whole(
     context: &Context<'_>,
 ) -> (Vec<usize>, Option<StopReason>) {
     let start = points.to_vec();
+    let is_costly = problem.hexes.len() > COSTLY;
+    let late = if is_costly { LATE } else { usize::MAX };
     let mut best: Option<(Vec<usize>, Vec<Vector>)> = None;
     let mut stopped = None;
     for volume_weight in [0.0, 1.0] {
         let mut trial = start.clone();
-        let limits = UntangleLimits { volume_weight, total, ..UntangleLimits::new() };
+        let limits = UntangleLimits { volume_weight, total, late, ..UntangleLimits::new() };
         stopped = untangle(problem, &mut trial, limits, context);
         let bad = bad_cells(problem, &trial);
         if best.as_ref().is_none_or(|(least, _)| bad.len() < least.len()) {
             best = Some((bad, trial));
         }
-        let valid = best.as_ref().is_some_and(|(bad, _)| bad.is_empty());
-        if stopped.is_some() || valid || problem.hexes.len() > ONE_ENERGY {
+        let is_done = |bad: &[usize]| bad.is_empty() || is_costly && is_hopeless(bad.len(), problem);
+        if stopped.is_some() || best.as_ref().is_some_and(|(bad, _)| is_done(bad)) || problem.hexes.len() > ONE_ENERGY {
             break;
         }
     }

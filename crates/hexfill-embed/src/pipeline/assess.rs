@@ -1,4 +1,6 @@
 //! The report: positions judged as they are returned.
+//!
+//! Source: ours.
 
 use super::normal::Normal;
 use crate::cell::frame::Frame;

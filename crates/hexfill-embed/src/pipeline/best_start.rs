@@ -3,6 +3,8 @@
 //! Starts run in batches whose sizes do not depend on the threads, and the best start is chosen by its [`Verdict`] and
 //! then by number, so the result does not depend on them either.
 //!
+//! Source: ours.
+//!
 //! [`Verdict`]: crate::quality::Verdict
 
 use super::assess::assess;
@@ -112,9 +114,11 @@ fn best(work: &Work<'_>, bounds: &mut Bounds, context: &Context<'_>) -> Outcome 
         let batch = if from == 0 { 1 } else { BATCH.min(starts - from) };
         // Progress comes from the driving thread: only a lone start reports in detail.
         let inner = if batch == 1 { *context } else { Context { progress: None, ..*context } };
+        // Taken before the batch and not changed by it: what a start does must not depend on which others are done.
         let target = bounds.target();
         let new: Vec<Candidate> =
             (from..from + batch).into_par_iter().map(|number| work.one(number, target, &inner)).collect();
+        // In the order of their numbers, whatever the threads did.
         found.extend(new);
         let best = found.iter().map(|c| c.verdict.worst).fold(f64::NEG_INFINITY, f64::max);
         context.report("starts", found.len() as u64, Some(u64::from(starts)), || format!("best {best:.6}"));

@@ -1,4 +1,6 @@
 //! Which way the worst scaled Jacobian is raised, by the size of the mesh.
+//!
+//! Source: ours; the sizes at which ways change were measured (`record/embed-2026-11-21.md`).
 
 use crate::improvement::{
     BarrierLimits, Goal, ProgramLimits, UntangleLimits, climb, climb_worst, follow_worst, is_worst_isolated,

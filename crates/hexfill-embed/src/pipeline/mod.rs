@@ -1,4 +1,6 @@
 //! The way of a mesh: normal coordinates, starts in batches, each worked out, the best one reported.
+//!
+//! Source: ours.
 
 mod assess;
 mod balance;

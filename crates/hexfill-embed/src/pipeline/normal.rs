@@ -1,6 +1,8 @@
 //! Normal coordinates: centred on the boundary and scaled by a power of two, so that sizes of 1e-300 and 1e300 are the same problem.
 //!
 //! Boundary vertices are returned with the bits they came with; scaling by a power of two loses none of the others' either, short of the smallest doubles.
+//!
+//! Source: ours.
 
 use crate::error::EmbedError;
 use crate::problem::Problem;

@@ -1,4 +1,6 @@
 //! One start, worked out: placed, untangled, improved.
+//!
+//! Source: ours.
 
 use super::improve::{LARGE, improve};
 use super::normal::Normal;

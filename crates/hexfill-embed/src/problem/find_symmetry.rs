@@ -2,6 +2,8 @@
 //!
 //! A symmetry here is an automorphism of the mesh whose action on the boundary vertices is that of an isometry of space (found
 //! from three boundary points, checked on all). Together they form a group, as automorphisms and isometries do.
+//!
+//! Source: ours.
 
 use super::free_vertices::{FIXED, Problem};
 use super::symmetric_variables::{IDENTITY, Matrix, Orbit, Symmetry, apply};

@@ -3,6 +3,8 @@
 //! Invariant: `slot[v]` is the variable of a free vertex and [`FIXED`] otherwise; `corners` lists, for each
 //! variable, the places `8 * hex + corner` where its vertex occurs, ascending. Sums over a vertex are taken in
 //! that order, whatever the number of threads, so results are the same to the last bit.
+//!
+//! Source: ours.
 
 use super::symmetric_variables::{Orbit, Symmetry};
 use crate::solvers::long_vectors::{PARALLEL, fill};

@@ -1,4 +1,6 @@
 //! What is placed: hexes with free and fixed vertices, their symmetric variables, and parts of them.
+//!
+//! Source: ours.
 
 mod find_symmetry;
 mod free_vertices;

@@ -3,6 +3,8 @@
 //! The free vertices of a patch are those of the cells within some rings of the seeds that are free in the whole; its
 //! cells are all cells at a free vertex, so a patch sees everything its vertices can spoil. Patches that share a cell are
 //! merged, hence can be solved at the same time and written back in any order with the same result.
+//!
+//! Source: ours.
 
 use super::free_vertices::{FIXED, Problem};
 use hexfill_geometry::Vector;
@@ -89,6 +91,8 @@ pub(crate) fn patches(problem: &Problem, incidence: &Incidence, seeds: &[usize],
         grown.extend_from_slice(&next);
         front = next;
     }
+    // Vertices of the grown cells move; cells that only touch one of them are in the patch too, as they may be
+    // spoilt, with their other vertices held.
     let mut free = vec![false; problem.n_vertices];
     for &h in &grown {
         for &v in &problem.hexes[h as usize] {

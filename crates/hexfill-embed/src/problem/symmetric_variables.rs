@@ -4,6 +4,8 @@
 //! its images: so there are fewer variables, and every result is symmetric up to rounding. (That a smooth symmetric function is stationary
 //! where it is stationary among symmetric positions: R. Palais 1979, the principle of symmetric criticality.)
 //! Invariant: the first member of an orbit is its smallest vertex, with the identity.
+//!
+//! Source: Palais 1979.
 
 use hexfill_geometry::{Vector, add_scaled, dot, scale, sub};
 

@@ -1,4 +1,6 @@
 //! How good positions are: all cells of a mesh judged, and two embeddings compared.
+//!
+//! Source: ours.
 
 mod verdict;
 mod worst_cells;

@@ -1,4 +1,6 @@
 //! [`Verdict`]: which of two embeddings of a mesh is better.
+//!
+//! Source: ours.
 
 use super::worst_cells::{bad_cells, worst_value};
 use crate::problem::Problem;

@@ -1,4 +1,6 @@
 //! The worst scaled Jacobian of every cell, over the whole cell, as closely as is asked for.
+//!
+//! Source: ours, on the bisection of Johnen, Weill, Remacle 2017.
 
 use crate::cell::bisection::Sign;
 use crate::cell::condition::log_condition;
@@ -21,7 +23,7 @@ pub(crate) struct Precision {
 }
 
 /// On the way,
-pub(crate) const COARSE: Precision = Precision { error: 1e-6, boxes: 200 };
+pub(crate) const COARSE: Precision = Precision { error: 1e-6, boxes: 2000 };
 /// and once the target seems to be reached.
 pub(crate) const FINE: Precision = Precision { error: 1e-10, boxes: 2000 };
 

@@ -1,6 +1,8 @@
 //! Conjugate gradients with a diagonal preconditioner (Hestenes and Stiefel 1952).
 //!
 //! For a symmetric positive semidefinite matrix, given by what it does to a vector; a singular one needs a residual in its range.
+//!
+//! Source: Hestenes, Stiefel 1952.
 
 use super::long_vectors::{add_long, dot_long};
 

@@ -1,6 +1,8 @@
 //! A linear or convex quadratic program in inequality form, handed to the interior-point solver.
 //!
 //! The solver runs on one thread with fixed settings, so the same program gives the same answer every time.
+//!
+//! Source: Goulart, Chen 2024 (the solver, Clarabel).
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus};

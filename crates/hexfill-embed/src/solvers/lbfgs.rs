@@ -3,6 +3,8 @@
 //! Nocedal 1980 (two-loop recursion); the line search brackets a weak Wolfe point by doubling and halving
 //! (Lewis and Overton 2013), which also serves functions that are infinite outside a domain.
 //! Invariant: only pairs with positive curvature are kept, so every direction is a descent direction.
+//!
+//! Source: Nocedal 1980, as algorithm 7.4 of Nocedal, Wright 2006 states it; Lewis and Overton 2013, section 4 (algorithm 4.6) for the line search.
 
 use super::long_vectors::{add_long, dot_long};
 use std::collections::VecDeque;

@@ -1,4 +1,6 @@
 //! Loops over long vectors: spread over threads, the same to the last bit at any number of them.
+//!
+//! Source: ours.
 
 use rayon::prelude::*;
 

@@ -5,6 +5,8 @@
 //! (Springborn 2005, "A unique representation of polyhedral types"). Computed as a circle packing of vertices and quads
 //! ([`super::circle_packing`]), laid out and lifted to the sphere ([`super::circle_layout`]), and centred with Lorentz boosts.
 //! A vertex is the apex of the cone that touches the sphere along its circle.
+//!
+//! Source: Springborn 2005; Bobenko, Springborn 2004.
 
 use super::circle_layout::touching_points;
 use super::circle_packing::Packing;

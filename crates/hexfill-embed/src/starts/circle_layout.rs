@@ -4,6 +4,8 @@
 //! right angles: so going once round a circle, kite by kite, gives the touching points of its edges and the centres of its neighbours. Circles are
 //! gone round in the order of their radii, largest first, as errors grow from large to small ones least.
 //! The lift is the stereographic projection of the touching points.
+//!
+//! Source: Bobenko, Springborn 2004 (kites); the order of the circles is ours.
 
 use super::circle_packing::Packing;
 use hexfill_geometry::Vector;
@@ -63,6 +65,8 @@ impl<'a> Layout<'a> {
 
     /// Puts the largest circle at the origin, with one touching point to its right. False if there is none.
     fn place_first(&mut self) -> bool {
+        // Where the plane's origin lies does not matter, as the lift centres it; a large circle first keeps errors
+        // small.
         let first = self
             .surface
             .darts()
@@ -121,6 +125,8 @@ impl<'a> Layout<'a> {
     fn project(&self) -> Vec<Vector> {
         let known: Vec<Point> = self.touch.iter().flatten().copied().collect();
         let count = known.len().max(1) as f64;
+        // The polyhedron is centred exactly later, by Lorentz boosts; this only keeps the lift from crowding all
+        // points into one cap, where digits are lost.
         let middle = [0, 1].map(|k| known.iter().map(|p| p[k]).sum::<f64>() / count);
         let mut distances: Vec<f64> = known.iter().map(|p| (p[0] - middle[0]).hypot(p[1] - middle[1])).collect();
         distances.sort_by(f64::total_cmp);

@@ -5,6 +5,8 @@
 //! Koebe's theorem"): send one touching point to infinity, so that its two vertices and two faces become the sides of a rectangle; the
 //! logarithmic radii of all others minimise a convex function whose gradient is "target angle minus sum of kite angles",
 //! `2 atan(r_j / r_i)` per kite.
+//!
+//! Source: Bobenko, Springborn 2004; existence: Koebe 1936, Andreev 1970.
 
 use crate::error::EmbedError;
 use crate::solvers::conjugate_gradients::{Limits, conjugate_gradients};
@@ -43,6 +45,8 @@ impl Packing {
                 (degrees, std::cmp::Reverse(d))
             })
             .expect("a sphere has edges");
+        // A circle through the point at infinity is a line: sending one touching point there takes four circles out
+        // of the unknowns, and the others keep plain angle sums.
         let mut is_line = vec![false; n];
         is_line[surface.origin(infinite).index()] = true;
         is_line[surface.target(infinite).index()] = true;

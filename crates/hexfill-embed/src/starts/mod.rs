@@ -1,4 +1,6 @@
 //! First positions: means of neighbours, and for surfaces without points those of a polyhedron.
+//!
+//! Source: each file names its own.
 
 mod canonical_polyhedron;
 mod circle_layout;

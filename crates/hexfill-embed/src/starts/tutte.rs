@@ -3,6 +3,8 @@
 //! With the fixed vertices' part moved to the right the matrix is symmetric, and positive definite wherever a path of edges joins a
 //! variable to a fixed vertex, so conjugate gradients solve it; the diagonal preconditions. Unit weights for the first start, random
 //! weights for restarts. The fixed vertices do not move. (Tutte's theorem is about planar graphs: in space cells may well be inverted.)
+//!
+//! Source: Tutte 1963.
 
 use crate::problem::Problem;
 use crate::solvers::conjugate_gradients::{Limits, conjugate_gradients};
@@ -41,6 +43,8 @@ impl Laplacian {
             Weights::Random(random) => edges.iter().map(|_| random.signed().exp()).collect(),
         };
         let n = problem.free.len();
+        // Rows of free vertices only; fixed neighbours are entries that go to the right side later. The edges are
+        // sorted, so the sums have one order.
         let mut start = vec![0u32; n + 1];
         let slot = |v: u32| problem.slot[v as usize] as usize;
         for &(a, b) in &edges {

@@ -3,6 +3,8 @@
 //! Hexes are `C3D8`. Quads on hexes are faces S1 to S6 of these in surfaces, the first of which, `BOUNDARY`, has all of them in
 //! their order; a shell there would carry load. Other quads are shells `S4`. Sets and surfaces are tags (see `groups`), those of
 //! tags without a name are called `TAG_n`.
+//!
+//! Source: the Abaqus keywords guide; the CalculiX manual.
 
 use crate::assembly::{Assembly, Slot};
 use crate::data::{MeshData, TagOn};

@@ -1,6 +1,8 @@
 //! JSON as used for hex templates: `{"hexes": [[8 indices], ...], "boundary_quads": [[4 indices], ...]}`, optionally with
 //! `points`, `point_tags`, `quad_tags`, `hex_tags`, `tag_names` (`[["faces", 3, "inlet"], ...]`), and `point_data`, `quad_data` and
 //! `hex_data` (objects of arrays, `null` for "no value"). Without `points` a file holds connectivity alone.
+//!
+//! Source: ours; RFC 8259 for the text.
 
 use crate::assembly::Assembly;
 use crate::data::{MeshData, TagName, TagOn};

@@ -3,6 +3,8 @@
 //! Written are quads first, then triangles: their order among each other is not kept.
 //! Names of tags are kept in comments.
 //! Sections that are not about points, faces and cells (corners, ridges, normals ...) are passed over. `End` closes the file.
+//!
+//! Source: Frey 2001.
 
 use crate::assembly::Assembly;
 use crate::data::MeshData;

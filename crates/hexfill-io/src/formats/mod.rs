@@ -1,4 +1,6 @@
 //! One file per format. Each reader takes a `Source` and gives a `MeshData`; each writer takes a checked `MeshData`.
+//!
+//! Source: each file names its own.
 
 pub(crate) mod inp;
 pub(crate) mod json;

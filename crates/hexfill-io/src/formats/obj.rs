@@ -3,6 +3,8 @@
 //!
 //! Indices count from 1; negative ones count back from the last point before the line. A backslash at the end joins a line
 //! with the next. Groups, objects and materials become tags of faces (see `groups`); all are written as groups.
+//!
+//! Source: the Wavefront format.
 
 use crate::assembly::{Assembly, Slot};
 use crate::data::{MeshData, TagOn};

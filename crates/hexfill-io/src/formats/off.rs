@@ -2,6 +2,8 @@
 //!
 //! Prefixes with texture, colour and normal (`STCNOFF`) are read, what they add to the points is passed over, as are the
 //! colours after a face. Comments begin with `#`.
+//!
+//! Source: the Geomview manual, "OFF Files".
 
 use crate::assembly::Assembly;
 use crate::data::MeshData;

@@ -4,6 +4,8 @@
 //! a cell are counter-clockwise seen from inside. On writing, the faces of the mesh come first, as they are, then the other
 //! facets of the hexes. On reading, the faces are those marked by our own property `hexfill:face`, otherwise all that have at most
 //! one cell. Other properties are tags and data; names of tags are kept in comments. A second property keeps the first corner of each hex, because half-faces know the cell only up to rotation.
+//!
+//! Source: Kremer et al. 2013.
 
 use crate::arrays::{self, component};
 use crate::assembly::{Assembly, Slot, Values};

@@ -2,6 +2,8 @@
 //!
 //! In ASCII every element is one line. A property `tag` of points or faces carries tags, other properties that are no lists are
 //! data; names of tags are kept in comments.
+//!
+//! Source: Turk 1994.
 
 use crate::arrays::{self, CellColumn, component};
 use crate::assembly::{Assembly, Slot, Values};

@@ -2,6 +2,8 @@
 //!
 //! A dataset stands between lines of `-1` and begins with its number. Cells of higher order list corners and the points between them by turns, round each
 //! face: [`kind_of`] says where the corners are.
+//!
+//! Source: the I-DEAS datasets.
 
 use crate::assembly::{Assembly, Slot};
 use crate::data::{MeshData, TagOn};

@@ -1,4 +1,6 @@
 //! Regular hex meshes.
+//!
+//! Source: ours.
 
 use crate::cube::POSITIONS;
 use crate::hexmesh::{HexMesh, HexMeshError};

@@ -1,4 +1,6 @@
 //! The same object under other names: for tests that an answer does not depend on numbering.
+//!
+//! Source: ours.
 
 use super::Random;
 use crate::cube::symmetries;

@@ -5,6 +5,8 @@
 //! and P3 (a ring of four quads inside a quad: four quads more), staying 3-connected all the way. Their counts for 6, 8, ..., 20 quads are
 //! 1, 1, 3, 11, 58, 451, 4461, 49957. A surface stays 3-connected as long as no vertex pair is twice an edge or diagonal
 //! (see [`crate::improper_pairs`]) and no degree falls below 3, so each move is judged by a look at a table of pairs.
+//!
+//! Source: Brinkmann et al. 2005 (3-connected quadrangulations from pseudo-double wheels).
 
 use super::{Random, cube_surface};
 use crate::surface::QuadSurface;
@@ -42,6 +44,9 @@ pub fn all_spheres_up_to(n_quads: usize) -> Vec<Vec<QuadSurface>> {
         let mut add = |surface: QuadSurface| {
             classes.entry(surface_signature(&surface)).or_insert(surface);
         };
+        // Each size from smaller ones by the theorem on the page: wheels, P1 from one quad less, P3 from four less.
+        // Every place is tried, and classes are told by their names: slower than plantri, which makes each once, and
+        // independent of it.
         if n % 2 == 0 {
             pseudo_double_wheel(n as u32 / 2).into_iter().for_each(&mut add);
         }

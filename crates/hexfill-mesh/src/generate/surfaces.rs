@@ -1,4 +1,6 @@
 //! Named and regular surfaces: the cube, benchmark spheres, tori, voxel surfaces, refinement.
+//!
+//! Source: the catalogue for named surfaces; the others are ours.
 
 use crate::cube::{FACETS, POSITIONS};
 use crate::ids::VertexId;
@@ -95,6 +97,8 @@ pub fn voxels(
             if inside(other) {
                 continue;
             }
+            // Points by where they are: two cells that share an edge only make that edge non-manifold, and the
+            // surface is refused.
             quads.push(facet.map(|corner| {
                 let point: [i32; 3] = std::array::from_fn(|k| cell[k] + i32::from(POSITIONS[corner][k]));
                 *ids.entry(point).or_insert_with(|| {
@@ -155,6 +159,7 @@ pub fn refined(surface: &QuadSurface, k: u32) -> Result<QuadSurface, SurfaceErro
         let dart = |side| crate::ids::Dart::new(crate::ids::QuadId(q), side);
         let inner = next;
         next += (k - 1) * (k - 1);
+        // The sides run counter-clockwise, so two of them against the grid's axes.
         let point = |i: u32, j: u32| match (i, j) {
             (i, 0) => along(dart(0), i),
             (i, j) if i == k => along(dart(1), j),

@@ -1,11 +1,13 @@
 //! [`collapse`]: everything that can be pressed flat.
+//!
+//! Source: the collapses of its two neighbours, over and over.
 
 use crate::simplify::column_collapse::collapse_columns;
 use crate::simplify::live::LiveMesh;
 use crate::simplify::quotient::Kept;
 use crate::simplify::sheet_collapse::{closed_sheets, collapse_sheets, sheet_quotient};
 use crate::simplify::{Simplified, SimplifyReport, Snapshot};
-use hexfill_mesh::{Context, HexMesh};
+use hexfill_mesh::{Context, HexId, HexMesh, VertexId};
 
 /// Which sheets and columns may be collapsed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -37,9 +39,21 @@ pub fn collapse(mesh: &HexMesh, which: Collapse, ctx: &Context<'_>) -> Simplifie
     Simplified { mesh, origin, report }
 }
 
+/// A mesh after one sheet is gone.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct WithoutSheet {
+    /// The mesh; vertices keep their order. Vertices of no hex are kept.
+    pub mesh: HexMesh,
+    /// Per vertex of it: the vertex of the input it was.
+    pub origin: Vec<VertexId>,
+    /// Per hex of it: the hex of the input it was.
+    pub hexes: Vec<HexId>,
+}
+
 /// The meshes that `mesh` becomes if one of its closed sheets is collapsed, those that lose most hexes first: for callers who choose by what connectivity
 /// does not tell. As [`collapse`] otherwise.
-pub fn single_sheet_collapses(mesh: &HexMesh, which: Collapse) -> Vec<Simplified> {
+pub fn single_sheet_collapses(mesh: &HexMesh, which: Collapse) -> Vec<WithoutSheet> {
     if which == Collapse::Nothing {
         return Vec::new();
     }
@@ -53,10 +67,12 @@ pub fn single_sheet_collapses(mesh: &HexMesh, which: Collapse) -> Vec<Simplified
         let merges = quotient.merges(&whole, &kept).ok()?;
         let mut live = whole.clone();
         live.merge(&quotient.removed, &quotient.facets, &merges);
-        let mut report = SimplifyReport::new(mesh.n_hexes());
-        (report.sheets, report.collapsed, report.after) = (1, mesh.n_hexes() - live.n_hexes(), live.n_hexes());
+        // A hex keeps its number until the mesh is settled.
+        let hexes = live.alive().map(HexId).collect();
         let (mesh, origin, _) = Snapshot::of(&live).settled(mesh);
-        Some(Simplified { mesh, origin, report })
+        // Collapsing merges vertices and makes none.
+        let origin = origin.into_iter().collect::<Option<Vec<VertexId>>>()?;
+        Some(WithoutSheet { mesh, origin, hexes })
     };
     closed.into_iter().filter_map(one).collect()
 }

@@ -7,6 +7,8 @@
 //!
 //! A column that ends on the boundary would fold the quads it ends with, so only closed ones can go, and only if the quad
 //! comes back without a quarter turn. The two sheets that cross along the column are cut there and joined otherwise.
+//!
+//! Source: Daniels et al. 2008 (quads); Shepherd et al. 2010 (hexes).
 
 use crate::simplify::live::{LiveMesh, NONE};
 use crate::simplify::quotient::{Kept, Quotient, edge};
@@ -57,6 +59,7 @@ pub(crate) fn closed_columns(live: &LiveMesh) -> Vec<(std::cmp::Reverse<usize>, 
             if seen[3 * hex as usize + direction] {
                 continue;
             }
+            // A facet number over 2 is a hex and a direction: the same slot whichever way the column is gone through.
             let mut at = 6 * hex + 2 * direction as u32;
             let start = at;
             let mut n = 0;
@@ -98,6 +101,8 @@ pub(crate) fn walk(live: &LiveMesh, hex: u32, direction: usize) -> Option<Vec<Pa
             break;
         }
     }
+    // Once round, the quad may come back turned. By a half turn opposite corners still fall on each other; by a
+    // quarter they would be exchanged, and all four would be merged.
     let turned = column[0].entry.iter().position(|&i| i == entry[0])?;
     let mut hexes: Vec<u32> = column.iter().map(|p| p.hex).collect();
     hexes.sort_unstable();

@@ -3,6 +3,8 @@
 //! Facet neighbours and, per vertex, a doubly linked list of the hex corners there. An exchange costs what the ball costs,
 //! whatever the size of the mesh. Ids of removed hexes and vertices are used again, last removed first, so the result does
 //! not depend on anything but the sequence of exchanges.
+//!
+//! Source: ours.
 
 use hexfill_mesh::HexMesh;
 use hexfill_mesh::cube::FACETS;

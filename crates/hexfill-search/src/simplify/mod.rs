@@ -11,6 +11,8 @@
 //! Work comes in batches: a batch of regions is grown in a mesh at rest by all threads, each with random numbers of its own,
 //! and their offers are then placed in order, those that no longer fit being dropped. So the result is the same for any number
 //! of threads, unless the clock ends it.
+//!
+//! Source: Verhetsel et al. 2018 (balls exchanged for smaller ones), Kirkpatrick et al. 1983 (annealing).
 
 mod collapse;
 #[cfg(test)]
@@ -27,7 +29,7 @@ use crate::atlas::Atlas;
 use crate::cavity::MAX_QUADS;
 use crate::grow::{GrowOptions, Growth};
 use collapse::collapse_live;
-pub use collapse::{Collapse, collapse, single_sheet_collapses};
+pub use collapse::{Collapse, WithoutSheet, collapse, single_sheet_collapses};
 pub use gate::Gate;
 use hexfill_mesh::{Context, HexMesh, StopReason, VertexId};
 pub(crate) use live::LiveMesh;
@@ -40,21 +42,20 @@ use std::sync::{Mutex, OnceLock};
 use std::time::{Duration, Instant};
 
 /// How much to do and how.
+///
+/// | option | default |
+/// |---|---|
+/// | balls | 100,000 |
+/// | quads, hexes of a ball at most | 24, 100 |
+/// | heat | 970 |
+/// | collapse | everything |
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub struct SimplifyOptions {
-    /// How many balls to grow: a bound of the work that does not depend on the clock. The chance of going up falls with the
-    /// share of the balls that is done, or of the time if the context has a deadline, whichever is further.
-    pub balls: u64,
-    /// Most quads of a ball that is looked up.
-    pub max_quads: usize,
-    /// Most hexes of a ball.
-    pub max_hexes: usize,
-    /// The chance, in thousandths, that a filling may have one more hex than the ball (then of another one, and so on) when the
-    /// work begins. 0: never more hexes, only fewer or as many.
-    pub heat: u32,
-    /// Which closed sheets and columns are [collapsed](collapse()), before the balls, between and after them.
-    pub collapse: Collapse,
+    balls: u64,
+    max_quads: usize,
+    max_hexes: usize,
+    heat: u32,
+    collapse: Collapse,
 }
 
 impl Default for SimplifyOptions {
@@ -64,25 +65,46 @@ impl Default for SimplifyOptions {
 }
 
 impl SimplifyOptions {
-    /// The options with another number of balls.
+    /// How many balls to grow: a bound of the work that does not depend on the clock. The chance of going up falls with the
+    /// share of the balls that is done, or of the time if the context has a deadline, whichever is further.
     #[must_use]
-    pub fn with_balls(mut self, balls: u64) -> Self {
-        self.balls = balls;
-        self
+    pub fn with_balls(self, balls: u64) -> Self {
+        Self { balls, ..self }
     }
 
-    /// The options with another chance of going up, in thousandths.
+    /// Most quads of a ball that is looked up.
     #[must_use]
-    pub fn with_heat(mut self, heat: u32) -> Self {
-        self.heat = heat.min(999);
-        self
+    pub fn with_max_quads(self, max_quads: usize) -> Self {
+        Self { max_quads, ..self }
     }
 
-    /// The options with other collapses.
+    /// Most hexes of a ball.
     #[must_use]
-    pub fn with_collapse(mut self, collapse: Collapse) -> Self {
-        self.collapse = collapse;
-        self
+    pub fn with_max_hexes(self, max_hexes: usize) -> Self {
+        Self { max_hexes, ..self }
+    }
+
+    /// The chance, in thousandths (at most 999), that a filling may have one more hex than the ball (then of another one, and so on) when the
+    /// work begins. 0: never more hexes, only fewer or as many.
+    #[must_use]
+    pub fn with_heat(self, heat: u32) -> Self {
+        Self { heat: heat.min(999), ..self }
+    }
+
+    /// Which closed sheets and columns are [collapsed](collapse()), before the balls, between and after them.
+    #[must_use]
+    pub fn with_collapse(self, collapse: Collapse) -> Self {
+        Self { collapse, ..self }
+    }
+
+    /// How many balls to grow.
+    pub fn balls(&self) -> u64 {
+        self.balls
+    }
+
+    /// Which closed sheets and columns are collapsed.
+    pub fn collapses(&self) -> Collapse {
+        self.collapse
     }
 }
 
@@ -233,6 +255,8 @@ fn exchange_balls(
             report.stop = stop;
             break;
         }
+        // Offers of one batch are made on the same mesh and those that touch a ball exchanged before are lost: so a
+        // batch is small beside the mesh.
         let size = (live.n_hexes() as u64 / 16).clamp(4, 1024).min(options.balls - report.balls);
         let done = clock.done(report.balls);
         if done / COLLAPSE_EVERY > collapsed_at {
@@ -243,6 +267,8 @@ fn exchange_balls(
         let search = search_of(options, if gate.is_some() { 0 } else { done });
         let seen = live.exchanges();
         for offer in offers(&live, &mut workers, report.balls, size, &search, ctx) {
+            // Blocked pairs far from the ball may have changed too, through vertices they share: hence the second
+            // question.
             if live.are_untouched_since(&offer.removed, seen) && still_fits(&live, &offer, seen) {
                 make(&mut live, &offer, &mut gate, &mut report);
             }
@@ -314,6 +340,8 @@ impl Snapshot {
         let mut number = vec![NONE; used.len()];
         let (mut origin, mut ids) = (Vec::new(), Vec::new());
         for v in 0..input.n_vertices() {
+            // Vertices that no hex used stay, as the ids of a surface must not shift; slots that a new vertex took
+            // over from an old one count as new.
             if !used_before[v] || used[v] && !self.is_new[v] {
                 number[v] = origin.len() as u32;
                 origin.push(Some(VertexId(v as u32)));
@@ -381,6 +409,7 @@ fn offers(
             if i as u64 >= size {
                 return;
             }
+            // Numbered by the ball and not by the thread, so that it draws the same numbers whoever grows it.
             let mut random = sequence(ctx.seed, first + i as u64);
             let mut seed = NONE;
             while seed == NONE || !live.is_alive(seed) {

@@ -4,6 +4,8 @@
 //! used by no hex outside: that is all of proper intersection, since two hexes that share two vertices without sharing the
 //! edge or quad they span would use one pair twice (see `flip.rs`). So a proper mesh stays proper, and since ball replaces
 //! ball, it stays what it was as a space.
+//!
+//! Source: Verhetsel et al. 2018; that blocked pairs are all there is to check is ours.
 
 use crate::atlas::Atlas;
 use crate::ball::Ball;
@@ -88,6 +90,8 @@ impl<'a> Worker<'a> {
         let small = search.sideways && random.below(2) == 0;
         let max_hexes = if small { (2 + random.below(SMALL)).min(search.max_hexes) } else { search.max_hexes };
         let mut least_gain = i32::from(!search.sideways);
+        // Geometric: each further hex that may be added is as improbable as the last, so large steps up are rare and
+        // never ruled out.
         while random.below(1000) < search.heat as usize {
             least_gain -= 1;
         }
@@ -138,6 +142,8 @@ impl<'a> Worker<'a> {
                 break;
             }
             if !is_blocked {
+                // Late, because most boundaries are not in the atlas with fewer hexes, and what lies outside takes a
+                // walk round every vertex.
                 region.block_outside(mesh, &mut cavity, &ids);
                 is_blocked = true;
             }
@@ -167,6 +173,7 @@ impl<'a> Worker<'a> {
                 let (added, _) = filling.ball.hexes_in(&boundary, mirrored, first_new);
                 let mut pairs = Vec::new();
                 for (a, &row) in used.iter().enumerate().take(ids.len()) {
+                    // Each pair once: its larger end is above the smaller.
                     let mut row = row >> a >> 1 << 1 << a;
                     while row != 0 {
                         pairs.push([ids[a], ids[row.trailing_zeros() as usize]]);
@@ -229,6 +236,8 @@ fn inside_pairs(mesh: &LiveMesh, region: &Region, cavity: &Cavity, ids: &[u32]) 
         let mut rest = all;
         while rest != 0 {
             let a = rest.trailing_zeros() as usize;
+            // Two corners of one hex are joined by something of that hex: an edge, a diagonal or a body diagonal.
+            // What the surface has as well is not inside.
             pairs[a] |= all & !(1 << a) & !surface[a];
             rest &= rest - 1;
         }

@@ -4,6 +4,8 @@
 //! ball and hex together are a ball again (two balls glued along a disk). The test is local: the six quads as a mask, the
 //! corners that no shared quad has must not be in the ball, and edges between its other corners that no shared quad has must
 //! not be edges of the ball's boundary. Every region is therefore shellable, in the order of its hexes.
+//!
+//! Source: Verhetsel et al. 2018 (balls grown in the mesh).
 
 use crate::cavity::{Cavity, MAX_QUADS};
 use crate::simplify::live::{LiveMesh, NONE};
@@ -204,10 +206,13 @@ impl Region {
             }
         }
         debug_assert_eq!(ids.len(), n + 2, "the boundary of a ball is a sphere");
+        // Euler: a quad sphere of n quads has n + 2 vertices. A ball grown hex by hex is one; this is the last guard
+        // before a table look-up that relies on it.
         if ids.len() != n + 2 {
             return None;
         }
         cavity.n_vertices = ids.len() as u8;
+        // A table of pairs and no map: the boundary is small, and this runs for every ball.
         let mut dart_to = [[u8::MAX; 64]; 64];
         for d in 0..4 * n as u8 {
             let (a, b) = (cavity.origin[usize::from(d)], cavity.origin[usize::from(crate::cavity::next(d))]);

@@ -7,6 +7,8 @@
 //! A sheet with a boundary curve would merge the ends of boundary edges, so only closed sheets can go. A sheet that crosses
 //! itself in a hex would press whole quads into points round the cycle of their edges and is refused for that.
 //! Collapsing one sheet leaves the others what they are, less the hexes that both pass.
+//!
+//! Source: Borden et al. 2002; Ledoux, Shepherd 2010.
 
 use crate::simplify::live::LiveMesh;
 use crate::simplify::quotient::{Kept, Quotient, edge};

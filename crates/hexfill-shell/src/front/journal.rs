@@ -1,4 +1,6 @@
 //! The changes of a front: each is written down with what was there before, so that the latest can be taken back.
+//!
+//! Source: ours; an undo log.
 
 use super::{Front, NONE};
 use crate::pairs::OldPair;

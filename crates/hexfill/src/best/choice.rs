@@ -1,4 +1,6 @@
 //! [`Choice`]: why this mesh and no other.
+//!
+//! Source: ours.
 
 use crate::fill::filled::{Filled, Route};
 use serde::{Serialize, Serializer};

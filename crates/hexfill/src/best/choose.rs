@@ -3,6 +3,8 @@
 //! Engines in this order, the next only if none before brought a good mesh: atlas and shelling, inward flips, construction.
 //! The order of meshes: certified ones first, then those whose worst scaled Jacobian is at least [`GOOD`], then fewest
 //! hexes for their quality ([`Prefer`]).
+//!
+//! Source: ours; measured in `record/embed-2026-11-21.md` and `record/shelling-2026-11-22.md`.
 
 use crate::best::budget::Budget;
 use crate::best::choice::{Candidate, Choice, Outcome};
@@ -47,6 +49,9 @@ pub(crate) const MOST_LAID: usize = 2500;
 
 /// Pillows are put into meshes of surfaces of at most so many quads.
 const MOST_PILLOWED: usize = 160;
+
+/// The share of the worst scaled Jacobian that is kept while tiny cells grow.
+const EVEN: f64 = 0.9;
 
 /// The place of a mesh in the order; smaller is better.
 type Rank = (u8, f64);
@@ -104,6 +109,7 @@ pub(crate) fn fill_best(
     let why_none = trial.go_on()?;
     trial.resort()?;
     trial.polish();
+    trial.inflate();
     let layers = trial.cut_layers()?;
     Ok(trial.finish(why_none, layers))
 }
@@ -217,7 +223,9 @@ impl<'a> Trial<'a> {
         }
         let none_valid = no_room(&self.problem.surface, self.boundary).map(|why| format!("none can be valid: {why}"));
         let why_none = none_valid.or_else(|| match self.hopeless() {
-            Some(Hopeless::Crosses(why)) => Some(format!("{why} (--best goes on all the same)")),
+            Some(Hopeless::Crosses(why) | Hopeless::Folded(why)) => {
+                Some(format!("{why} (--best goes on all the same)"))
+            }
             _ => None,
         });
         // The atlas has many fillings of the smallest surfaces, with fewer hexes than can be laid.
@@ -264,7 +272,8 @@ impl<'a> Trial<'a> {
                 continue;
             }
             verify(surface, &laid.mesh, Route::Laying)?;
-            let filled = Filled { start: Some(laid.points), ..Filled::by(Route::Laying, laid.mesh) };
+            let makers = laid.steps.iter().map(|&step| Maker::of_laying(step)).collect();
+            let filled = Filled { start: Some(laid.points), makers, ..Filled::by(Route::Laying, laid.mesh) };
             self.consider_from(filled, false)?;
         }
         Ok(())
@@ -319,8 +328,8 @@ impl<'a> Trial<'a> {
         }
         self.result.tried.push(Attempt::Fillings { found: found.meshes.len() });
         let mut embed = *self.embed;
-        if embed.starts == 0 {
-            embed.starts = STARTS;
+        if embed.starts() == 0 {
+            embed = embed.with_starts(STARTS);
         }
         match place_best(&found.meshes, self.problem, self.boundary, &embed, &self.limited()) {
             Some((filled, placed)) if placed.is_certified() => self.consider(filled),
@@ -400,18 +409,18 @@ impl<'a> Trial<'a> {
         }
         let placed = if is_shelled || filled.route == Route::Laying {
             // Its surface vertices lie where the surface's do, so there is one way to place it.
-            let mut one = *self.embed;
-            one.starts = one.starts.max(1);
-            one.programs = one.programs.min(self.budget.screening);
-            one.smooth_start = is_guess;
+            let one = self
+                .embed
+                .with_starts(self.embed.starts().max(1))
+                .with_programs(self.embed.programs().min(self.budget.screening))
+                .with_smooth_start(is_guess);
             let placed = place_as_it_is(&filled, self.boundary, Some(&one), &self.limited());
             self.placed_from_coarse(&filled, placed, one)
         } else {
-            let mut how = *self.embed;
-            how.programs = how.programs.min(self.budget.others);
+            let mut how = self.embed.with_programs(self.embed.programs().min(self.budget.others));
             let is_late = self.best.is_some() || filled.route == Route::Construction;
-            if how.starts == 0 && is_late && self.hopeless().is_some() {
-                how.starts = 1;
+            if how.starts() == 0 && is_late && self.hopeless().is_some() {
+                how = how.with_starts(1);
             }
             let (turned, placed) = place_at(filled, self.problem, self.boundary, Some(&how), &self.limited());
             filled = turned;
@@ -436,7 +445,7 @@ impl<'a> Trial<'a> {
 
     /// A mesh that was placed, or placed once more if it is not good: from the positions of the coarse mesh it was lifted from, which has
     /// few hexes and is often valid where the fine one is not.
-    fn placed_from_coarse(&self, filled: &Filled, placed: Placed, mut how: hexfill_embed::Options) -> Placed {
+    fn placed_from_coarse(&self, filled: &Filled, placed: Placed, how: hexfill_embed::Options) -> Placed {
         let is_good = placed.is_certified() && placed.worst() >= GOOD;
         let Some(coarse) = filled.coarse.as_ref().filter(|_| !is_good && self.ctx.stop().is_none()) else {
             return placed;
@@ -444,7 +453,7 @@ impl<'a> Trial<'a> {
         let at = hexfill_embed::embed(coarse.mesh(), &coarse.boundary(), None, &how, &self.limited());
         let Some(start) = at.ok().and_then(|at| coarse.lifted(&at.points)) else { return placed };
         let from = Filled { start: Some(start), ..filled.clone() };
-        how.smooth_start = false;
+        let how = how.with_smooth_start(false);
         let again = place_as_it_is(&from, self.boundary, Some(&how), &self.limited());
         // Never worse: the first placement stays where the second is not better.
         let is_better = rank(filled, &again, self.options.prefer) < rank(filled, &placed, self.options.prefer);
@@ -489,14 +498,35 @@ impl<'a> Trial<'a> {
         {
             return;
         }
-        let mut more = *self.embed;
-        more.starts = 1;
-        more.programs = more.programs.min(self.budget.programs);
+        let all = self.embed.programs();
+        // What is not good yet is worth all of them.
+        let programs = if placed.worst() >= GOOD { all.min(self.budget.programs) } else { all };
+        let more = self.embed.with_starts(1).with_programs(programs);
         let from = Filled { start: Some(placed.points.clone()), ..filled.clone() };
         let polished = place_as_it_is(&from, self.boundary, Some(&more), &limited);
         // What was screened is certified already; the raise must not lose that.
         if polished.is_certified() && polished.worst() > placed.worst() {
             *placed = polished;
+        }
+    }
+
+    /// Lets tiny cells of the best mesh grow. A scaled Jacobian knows no sizes, and hexes laid round an apex shrink from pillow to pillow.
+    fn inflate(&mut self) {
+        let limited = self.limited();
+        let Some((_, filled, placed)) =
+            self.best.as_mut().filter(|(_, f, p)| f.route == Route::Laying && p.is_certified())
+        else {
+            return;
+        };
+        let worst = placed.worst();
+        let floor = if worst >= GOOD { GOOD.max(EVEN * worst) } else { EVEN * worst };
+        // The judge's lower bounds are a little lower.
+        let asked = 1.02 * floor;
+        let Ok(Some(points)) = hexfill_embed::inflate(&filled.mesh, &placed.points, asked, &limited) else { return };
+        let inflated = Placed::judged(&filled.mesh, self.boundary, points, placed.embedding.clone(), None);
+        // Whoever judges has the last word.
+        if inflated.is_certified() && inflated.worst() >= floor {
+            *placed = inflated;
         }
     }
 

@@ -3,6 +3,8 @@
 //! Ranges from what was measured (`record/estimate-2026-11-22.md`), not from a model: the processor time of a filling differs by a
 //! factor of a hundred between surfaces of one size. What tells most is whether a chord crosses itself: such surfaces close rarely by layers,
 //! are stirred, and at last constructed, with some 46 hexes a quad.
+//!
+//! Source: ours.
 
 use crate::best::PlaceOptions;
 use crate::best::choose::MOST_LAID;

@@ -1,6 +1,8 @@
 //! Surfaces on which the search for a good mesh is in vain: they cross themselves, or their own angles forbid one. Of each candidate they get
-//! one embedding; where they cross themselves, they get no candidates beyond the first engine that brings a mesh. Counts bound the work, not a
+//! one embedding; where they cross themselves, or quads lie on each other, they get no candidates beyond the first engine that brings a mesh. Counts bound the work, not a
 //! clock, so that the mesh is the same every time.
+//!
+//! Source: ours.
 
 use crate::doctor::crossings::crossing_quads;
 use crate::problem::Problem;
@@ -8,12 +10,16 @@ use hexfill_embed::surface_limits;
 
 /// A surface that keeps every mesh below this scaled Jacobian is not worth many trials.
 const LEAST: f64 = 0.01;
+/// One that keeps every mesh below this leaves none: rounding alone keeps it from zero.
+const NOTHING: f64 = 1e-12;
 
 /// Why much work on a surface is in vain.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub(crate) enum Hopeless {
     /// Every mesh overlaps itself, or touches itself from outside.
     Crosses(String),
+    /// Quads lie on each other, or corners are straight, up to rounding.
+    Folded(String),
     /// No mesh can be good, though one may be valid.
     Sharp(String),
 }
@@ -26,9 +32,15 @@ pub(crate) fn hopeless(problem: &Problem, boundary: &[[f64; 3]]) -> Option<Hopel
     }
     let limits = surface_limits(&problem.surface, boundary)?;
     let bounds = limits.corners.iter().map(|c| c.bound).chain(limits.edges.iter().map(|e| e.bound));
-    (bounds.fold(1.0, f64::min) < LEAST).then(|| {
-        Hopeless::Sharp(format!("the angles of the surface keep every mesh below a scaled Jacobian of {LEAST}"))
-    })
+    match bounds.fold(1.0, f64::min) {
+        bound if bound < NOTHING => {
+            Some(Hopeless::Folded("the angles of the surface leave no mesh a positive scaled Jacobian".to_owned()))
+        }
+        bound if bound < LEAST => Some(Hopeless::Sharp(format!(
+            "the angles of the surface keep every mesh below a scaled Jacobian of {LEAST}"
+        ))),
+        _ => None,
+    }
 }
 
 #[cfg(test)]
@@ -43,6 +55,11 @@ mod tests {
         assert_eq!(hopeless(&problem, &points), None);
         let flat: Vec<_> = points.iter().map(|p| [p[0], p[1], 1e-9 * p[2]]).collect();
         assert!(matches!(hopeless(&problem, &flat), Some(Hopeless::Sharp(_))));
+        let mut folded = points.clone();
+        // A quad is folded along its diagonal.
+        let [corner, _, opposite, _] = problem.surface.quads()[0].map(|v| v.index());
+        folded[corner] = folded[opposite];
+        assert!(matches!(hopeless(&problem, &folded), Some(Hopeless::Folded(_))), "{:?}", hopeless(&problem, &folded));
         let (surface, cells) = hexfill_mesh::generate::voxels([3, 1, 1], |_| true).unwrap();
         let mut problem = Problem::from_surface("box", surface);
         let mut through: Vec<_> = cells.into_iter().map(|p| p.map(f64::from)).collect();

@@ -3,6 +3,8 @@
 //! The smallest filling of a small surface often has none. Then more fillings are looked for, and at last the surface is
 //! constructed, whose cells were chosen for their coordinates. Nothing is lost: where nothing is certified, the smallest
 //! filling stays.
+//!
+//! Source: ours.
 
 mod budget;
 pub(crate) mod choice;
@@ -114,6 +116,8 @@ pub fn fill_placed(
     how: &PlaceOptions,
     ctx: &Context<'_>,
 ) -> Result<PlacedFill, FillError> {
+    // A power of two changes no digit, but the judge works with the file's numbers: so it judges again once they are
+    // back.
     if let Some(scaled) = Scaled::of(problem, options) {
         let mut made = fill_placed(&scaled.problem, &scaled.options, how, ctx)?;
         for (filled, placed) in &mut made.meshes {
@@ -138,6 +142,8 @@ pub fn fill_placed(
         check_fillable(&problem.surface)?;
         return fill_best(problem, options, how, embed, &boundary, ctx);
     }
+    // Several meshes, a strategy of the caller's, or solids apart: what is asked for is placed, and nothing else is
+    // tried.
     let FillResult { meshes, stop, tried } = fill(problem, options, ctx)?;
     let Some(boundary) = problem.positions().filter(|_| !meshes.is_empty()) else {
         return Ok(PlacedFill { meshes: meshes.into_iter().map(|m| (m, None)).collect(), stop, tried, choice: None });

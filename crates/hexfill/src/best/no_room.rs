@@ -1,4 +1,6 @@
 //! Surfaces whose positions leave no room for a valid mesh.
+//!
+//! Source: ours.
 
 use hexfill_geometry::{cone, cross, dot, sub};
 use hexfill_mesh::{QuadId, QuadSurface, VertexId};

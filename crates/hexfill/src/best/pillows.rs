@@ -4,6 +4,8 @@
 //! the sweep left. A pillow, a sheet of one hex a quad, can be put round any set of hexes whose surface is a sphere (Mitchell, Tautges 1995), so before any stage of the shelling after the fact; it takes neighbours apart that share too much. A
 //! search puts pillows near corners that are not positive, untangles what lies round them, and keeps what brings the corners nearer to positive for
 //! the hexes it costs. Measured in `record/self-crossing-2026-11-22.md`, section 1; counts bound the work, not a clock.
+//!
+//! Source: Mitchell, Tautges 1995 (the pillow); the search for places is ours.
 
 use hexfill_embed::untangle_near;
 use hexfill_geometry::{Vector, cross, dot, norm, sub};

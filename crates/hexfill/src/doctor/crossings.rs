@@ -1,4 +1,6 @@
 //! Quads that cross each other.
+//!
+//! Source: ours.
 
 use crate::problem::Problem;
 use hexfill_doctor::{Soup, crossings};

@@ -1,4 +1,6 @@
 //! [`cure`]: the smallest changes that make a surface one to fill.
+//!
+//! Source: ours.
 
 use crate::problem::Problem;
 use hexfill_doctor::{MendOptions, Soup, mend};

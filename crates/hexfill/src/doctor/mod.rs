@@ -1,4 +1,6 @@
 //! [`doctor`]: everything about a surface before the work.
+//!
+//! Source: ours.
 
 pub(crate) mod crossings;
 pub(crate) mod cure;

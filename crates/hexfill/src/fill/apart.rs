@@ -1,4 +1,6 @@
 //! Solids that lie apart, filled one by one.
+//!
+//! Source: ours.
 
 use crate::fill::attempt::Attempt;
 use crate::fill::component::fill_component;

@@ -1,4 +1,6 @@
 //! [`Attempt`]: what was tried.
+//!
+//! Source: ours.
 
 use hexfill_construct::{ConstructError, Report};
 use hexfill_search::{MAX_CAP, SimplifyReport};

@@ -1,4 +1,6 @@
 //! One solid: the engines in their order.
+//!
+//! Source: ours.
 
 use crate::fill::construct::construct;
 use crate::fill::error::FillError;
@@ -33,6 +35,7 @@ pub(crate) fn fill_component(
         });
     }
     let mut result = FillResult::new();
+    // Engines before the last one stop a little early: a construction that is stopped is no mesh at all.
     let early = leaving_time(problem, options, ctx);
     let by_atlas = matches!(options.strategy, Strategy::Auto | Strategy::Atlas);
     let by_shelling = matches!(options.strategy, Strategy::Auto | Strategy::Shell);

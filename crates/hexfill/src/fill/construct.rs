@@ -1,4 +1,6 @@
 //! The construction, made smaller if that was asked for.
+//!
+//! Source: ours.
 
 use crate::fill::attempt::Attempt;
 use crate::fill::error::FillError;
@@ -33,8 +35,10 @@ pub(crate) fn construct(
             InteriorFrom::Tets(tets) => Some(tets.clone()),
             InteriorFrom::Tetgen(program) => Some(Arc::new(program.clone())),
         };
-        let cells = options.cells;
-        let how = ConstructOptions { tets, cells, variant, ..ConstructOptions::default() };
+        let mut how = ConstructOptions::default().with_cells(options.cells).with_variant(variant);
+        if let Some(tets) = tets {
+            how = how.with_tets(tets);
+        }
         let made = match hexfill_construct::construct(&problem.surface, points.as_deref(), &how, ctx) {
             Err(hexfill_construct::ConstructError::Stopped(reason)) => {
                 result.stop = reason;
@@ -43,6 +47,7 @@ pub(crate) fn construct(
             }
             made => made?,
         };
+        // Variants differ by diagonals and matchings only; one report stands for all.
         if variant == 0 {
             result.tried.push(Attempt::Construction(Box::new(made.report)));
         }

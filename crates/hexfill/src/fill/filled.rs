@@ -1,4 +1,6 @@
 //! [`Filled`]: a verified mesh and how it was found.
+//!
+//! Source: ours.
 
 use crate::fill::attempt::Attempt;
 use crate::fill::maker::{Maker, layers, shares};

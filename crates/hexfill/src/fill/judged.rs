@@ -1,4 +1,6 @@
 //! Nothing is let out that the judge refused.
+//!
+//! Source: ours; that every answer passes the checker is varisat's rule.
 
 use crate::fill::error::FillError;
 use crate::fill::filled::{FillResult, Filled, Route};

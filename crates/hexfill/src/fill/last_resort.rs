@@ -1,5 +1,7 @@
 //! What a stopped fill still owes: a mesh. Where none was found in time the surface is constructed, which takes next to no time unless it is
 //! large.
+//!
+//! Source: ours.
 
 use crate::fill::attempt::Attempt;
 use crate::fill::construct::construct;

@@ -1,6 +1,10 @@
 //! [`Maker`]: which engine, or which step of one, made a hex.
+//!
+//! Source: ours.
 
+use hexfill_lay::Step;
 use hexfill_mesh::{HexId, HexMesh};
+use hexfill_shell::Stage;
 use serde::{Serialize, Serializer};
 use std::fmt;
 
@@ -41,7 +45,7 @@ pub enum Maker {
     Residual = 14,
     /// A second inner edge at a poor surface vertex.
     SplitStars = 15,
-    /// A pillow between stages of the shelling.
+    /// A pillow between stages of the shelling, or in the void where hexes are laid.
     PillowsBetween = 16,
     /// A boundary layer.
     BoundaryLayers = 17,
@@ -103,9 +107,28 @@ impl Maker {
         }
     }
 
-    /// A stage of the shelling by its name.
-    pub(crate) fn of_stage(name: &str) -> Self {
-        Self::ALL[Self::Grid as usize..].iter().copied().find(|maker| maker.words() == name).unwrap_or(Self::Shelling)
+    /// A stage of the shelling.
+    pub(crate) fn of_stage(stage: Stage) -> Self {
+        match stage {
+            Stage::Grid => Self::Grid,
+            Stage::Columns => Self::Columns,
+            Stage::Pillows => Self::Pillows,
+            Stage::Plugs => Self::Plugs,
+            Stage::Layers => Self::Layers,
+            Stage::Flips => Self::Flips,
+            Stage::Residual => Self::Residual,
+        }
+    }
+
+    /// A step of laying.
+    pub(crate) fn of_laying(step: Step) -> Self {
+        match step {
+            Step::Pillow => Self::Pillows,
+            Step::Plug => Self::Plugs,
+            Step::Sweep => Self::Flips,
+            Step::Between => Self::PillowsBetween,
+            Step::Laid => Self::Laying,
+        }
     }
 }
 
@@ -164,8 +187,10 @@ mod tests {
             assert_eq!(usize::from(maker.number()), i);
             assert_eq!(Maker::ALL.iter().filter(|m| m.words() == maker.words()).count(), 1);
         }
-        assert_eq!(Maker::of_stage("residual"), Maker::Residual);
-        assert_eq!(Maker::of_stage("something new"), Maker::Shelling);
+        use Stage::{Columns, Flips, Grid, Layers, Pillows, Plugs, Residual};
+        for stage in [Grid, Columns, Pillows, Plugs, Layers, Flips, Residual] {
+            assert_eq!(Maker::of_stage(stage).words(), stage.to_string());
+        }
     }
 
     #[test]

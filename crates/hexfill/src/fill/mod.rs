@@ -2,6 +2,8 @@
 //!
 //! `options -> component (search, shelled, construct) -> judged -> filled`; solids that lie apart take that way each (`apart`), and what was
 //! stopped before there was a mesh is constructed (`last_resort`).
+//!
+//! Source: ours.
 
 mod apart;
 pub(crate) mod attempt;

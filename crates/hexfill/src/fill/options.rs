@@ -89,7 +89,7 @@ impl Default for FillOptions {
             growth_log: None,
             growth: GrowOptions::default(),
             inward_cavities: 1_000_000,
-            beam: InwardOptions::default().beam,
+            beam: InwardOptions::default().beam(),
             interior: InteriorFrom::BuiltIn,
             cells: CellChoice::Embeddable,
             simplify: None,

@@ -1,5 +1,7 @@
 //! Surfaces of any size: engines multiply lengths, so one that is far larger or smaller than 1 is scaled by a power of two before any of them
 //! sees it, and its meshes are scaled back. Surfaces of ordinary size are left alone, bit for bit.
+//!
+//! Source: ours.
 
 use crate::fill::filled::Filled;
 use crate::fill::options::{FillOptions, InteriorFrom};

@@ -1,4 +1,6 @@
 //! Small spheres: the atlas, inward flips, and growth of an atlas towards the surface.
+//!
+//! Source: Verhetsel et al. 2019, in the order atlas, flips, growth, which is ours.
 
 use crate::fill::attempt::Attempt;
 use crate::fill::error::FillError;
@@ -20,14 +22,13 @@ pub(crate) fn search(
     result: &mut FillResult,
 ) -> Result<(), FillError> {
     let atlas = options.atlas.as_deref().unwrap_or_else(|| suited(surface, options));
-    let inward = InwardOptions {
-        max_hexes: options.max_hexes,
+    let inward = InwardOptions::default()
+        .with_max_hexes(options.max_hexes)
         // Several placements may be isomorphic as meshes: look for more than are asked for.
-        count: if options.count == 1 { 1 } else { 8 * options.count },
-        improve: options.improve,
-        max_cavities: if options.improve { u64::MAX } else { options.inward_cavities },
-        beam: options.beam,
-    };
+        .with_count(if options.count == 1 { 1 } else { 8 * options.count })
+        .with_improve(options.improve)
+        .with_max_cavities(if options.improve { u64::MAX } else { options.inward_cavities })
+        .with_beam(options.beam);
     let outcome = fill_from_atlas(surface, atlas, &inward, ctx).expect("the caller checked: a small sphere");
     if outcome.stop != StopReason::Finished {
         result.stop = outcome.stop;
@@ -62,7 +63,7 @@ pub(crate) fn smallest_on_record(
     options: &FillOptions,
     ctx: &Context<'_>,
 ) -> Result<Option<Filled>, FillError> {
-    let look_up = InwardOptions { max_hexes: options.max_hexes, max_cavities: 1, ..InwardOptions::default() };
+    let look_up = InwardOptions::default().with_max_hexes(options.max_hexes).with_max_cavities(1);
     let outcome = fill_from_atlas(surface, Atlas::fewest(), &look_up, ctx).expect("the caller checked: a small sphere");
     let Some(filling) = outcome.fillings.into_iter().next() else { return Ok(None) };
     let filled = Filled::by(Route::Atlas, filling.mesh);
@@ -91,6 +92,8 @@ fn grow_towards(
         None => (None, Growth::new(grow_options)),
     };
     loop {
+        // Asked after each level, so the first filling found has the fewest hexes this growth can reach; nothing is
+        // blocked outside a whole surface, so the first placement is as good as any.
         for ball in growth.balls_for(&cavity) {
             if ball.n_hexes() as u64 > u64::from(options.max_hexes) {
                 continue;

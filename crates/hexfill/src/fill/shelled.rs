@@ -1,4 +1,6 @@
 //! The surface swept inward by its own dual curves.
+//!
+//! Source: ours.
 
 use crate::fill::attempt::Attempt;
 use crate::fill::error::FillError;
@@ -8,7 +10,7 @@ use crate::fill::maker::Maker;
 use crate::fill::options::FillOptions;
 use crate::problem::Problem;
 use hexfill_mesh::Context;
-use hexfill_shell::shell;
+use hexfill_shell::{Stage, shell};
 
 /// Complete meshes by shelling, judged, those with least cost first.
 pub(crate) fn shelled(
@@ -20,7 +22,7 @@ pub(crate) fn shelled(
     let points = problem.positions();
     let mut how = options.shell.clone();
     if options.layers.is_some() {
-        how.pillows = vec![1];
+        how = how.with_pillows(vec![1]);
     }
     let made = shell(&problem.surface, points.as_deref(), &how, ctx);
     result.stop = ctx.stop().unwrap_or(result.stop);
@@ -36,7 +38,7 @@ pub(crate) fn shelled(
         }
         if shelled.mesh.n_hexes() as u64 <= u64::from(options.max_hexes) {
             verify(&problem.surface, &shelled.mesh, Route::Shelling)?;
-            let of_stage = |&(stage, n): &(&str, usize)| std::iter::repeat_n(Maker::of_stage(stage), n);
+            let of_stage = |&(stage, n): &(Stage, usize)| std::iter::repeat_n(Maker::of_stage(stage), n);
             meshes.push(Filled {
                 mesh: shelled.mesh,
                 route: Route::Shelling,

@@ -1,4 +1,6 @@
 //! The best known meshes of the catalogue, laid into surfaces that are one of its own up to numbering, orientation and coordinates: templates.
+//!
+//! Source: ours.
 
 use crate::problem::catalog;
 use hexfill_mesh::{HexMesh, QuadSurface, VertexId, surface_isomorphism};

@@ -1,4 +1,6 @@
 //! [`ExistenceInfo`]: whether a hex mesh exists, for people and for JSON.
+//!
+//! Source: Erickson 2014, section 4.
 
 use hexfill_construct::Existence;
 use serde::Serialize;

@@ -1,4 +1,6 @@
 //! The part of a description about positions: vertices, corners and edges of a surface that bound what any mesh of it can reach.
+//!
+//! Source: ours.
 
 use hexfill_embed::{CornerLimit, EdgeLimit, VertexLimit, surface_limits};
 use hexfill_mesh::QuadSurface;

@@ -1,4 +1,6 @@
 //! What a hex mesh is: sheets, signature, its boundary.
+//!
+//! Source: ours.
 
 use crate::info::surface::{SIGNATURE_LIMIT, SurfaceInfo, describe_surface};
 use hexfill_io::MeshData;

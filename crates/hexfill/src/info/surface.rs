@@ -1,4 +1,6 @@
 //! What a surface is: genus, chords, key, signature, whether a hex mesh exists and why.
+//!
+//! Source: ours; keys: Weill.
 
 use crate::info::existence::ExistenceInfo;
 use crate::info::limits::{self, LimitsInfo};

@@ -1,4 +1,6 @@
 //! [`embed_mesh`]: new positions for the interior vertices of any hex mesh.
+//!
+//! Source: ours.
 
 use crate::place::placed::Placed;
 use hexfill_embed::{EmbedError, Options, embed};

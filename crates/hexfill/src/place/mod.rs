@@ -1,4 +1,6 @@
 //! Coordinates for a filling, and what the judge says of them cell by cell. Never more is said than was shown.
+//!
+//! Source: ours.
 
 pub(crate) mod embed_mesh;
 pub(crate) mod placed;

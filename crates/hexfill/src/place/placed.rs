@@ -1,4 +1,6 @@
 //! [`Placed`]: positions with the judge's verdict on every hex.
+//!
+//! Source: ours.
 
 use crate::place::report::GeometryReport;
 use hexfill_check::{CellQuality, Judged, cell_quality};
@@ -41,6 +43,9 @@ pub struct Placed {
     pub(crate) refused: Option<EmbedError>,
     pub(crate) ways: usize,
 }
+
+/// Half of the last digit that is printed of a scaled Jacobian.
+const HALF_A_DIGIT: f64 = 0.5e-6;
 
 /// The judge's numbers on every hex. Every vertex id of a `HexMesh` has a position here, so every hex has a quality.
 fn judged_cells(mesh: &HexMesh, points: &[[f64; 3]]) -> Vec<CellQuality> {
@@ -135,7 +140,8 @@ impl Placed {
     fn volume_ratio(&self) -> Option<f64> {
         let volumes = || self.cells.iter().map(|c| c.volume);
         let (least, most) = (volumes().fold(f64::INFINITY, f64::min), volumes().fold(0.0, f64::max));
-        (!self.cells.is_empty() && least > 0.0 && (most / least).is_finite()).then_some(most / least)
+        // Those of very large coordinates are no numbers, those of very small ones zero.
+        (least > 0.0 && least <= most && (most / least).is_finite()).then_some(most / least)
     }
 
     /// Placements with fewer hexes that are not certified rank higher, then those with a larger worst scaled Jacobian.
@@ -155,7 +161,8 @@ impl Placed {
             mean_scaled_jacobian: judged.then(|| self.certified().sum::<f64>() / self.cells.len() as f64),
             histogram: judged.then(|| {
                 let mut steps = [0; 10];
-                self.certified().for_each(|x| steps[((10.0 * x) as usize).min(9)] += 1);
+                // A bound that is printed as 0.500000 counts as 0.5.
+                self.certified().for_each(|x| steps[((10.0 * (x + HALF_A_DIGIT)) as usize).min(9)] += 1);
                 steps
             }),
             volume_ratio: self.volume_ratio(),

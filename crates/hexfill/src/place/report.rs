@@ -16,9 +16,9 @@ pub struct GeometryReport {
     pub certified_scaled_jacobian: Option<f64>,
     /// Mean of the certified scaled Jacobians; hexes that are not certified count as 0.
     pub mean_scaled_jacobian: Option<f64>,
-    /// Hexes by certified scaled Jacobian, in ten steps of 0.1 from 0; hexes that are not certified are in none of them.
+    /// Hexes by certified scaled Jacobian, rounded to six digits, in ten steps of 0.1 from 0; hexes that are not certified are in none of them.
     pub histogram: Option<[usize; 10]>,
-    /// The largest volume of a hex divided by the smallest; absent if one is not positive.
+    /// The largest volume of a hex divided by the smallest; absent if one is not positive, or too large for a double.
     pub volume_ratio: Option<f64>,
     /// The largest ratio of the longest to the shortest edge of a hex.
     pub edge_ratio: Option<f64>,

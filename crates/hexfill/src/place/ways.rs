@@ -4,6 +4,8 @@
 //! Each of them carries a filling to another one, isomorphic as a mesh, with other coordinates: the scaled Jacobian of one
 //! pyramid of 44 hexes is at most 0 one way and reaches 0.396 the other. Two ways are the same if an automorphism of the mesh
 //! and a congruence of the positions carry one to the other (double cosets).
+//!
+//! Source: ours.
 
 use hexfill_embed::star_bounds;
 use hexfill_geometry::{norm, sub};
@@ -59,6 +61,8 @@ pub(crate) fn placements(mesh: &HexMesh, surface: &QuadSurface, points: &[[f64; 
                 seen.insert((0..n).map(image).collect());
             }
         }
+        // Ranked by what stars allow and not by embedding each: the bound costs a moment, and where it is 0 no
+        // embedding can be valid.
         let mesh = turned(mesh, turn);
         let least = |bounds: Vec<hexfill_embed::StarBound>| bounds.iter().fold(f64::INFINITY, |m, b| m.min(b.bound));
         let upper_bound = star_bounds(&mesh, points).map_or(f64::NEG_INFINITY, least);
@@ -76,6 +80,8 @@ fn is_congruence(turn: &SurfaceAutomorphism, points: &[[f64; 3]]) -> bool {
     let at = |v: usize| points[v].map(|x| x / largest);
     let distance = |v: usize, w: usize| norm(sub(at(v), at(w)));
     let image = |v: usize| turn.vertices[v].index();
+    // All distances, as that is what an isometry keeps; reflections count, since a mirrored mesh embeds as well.
+    // Surfaces with symmetries to ask about are small.
     (0..n).all(|v| (0..v).all(|w| (distance(v, w) - distance(image(v), image(w))).abs() <= TOLERANCE))
 }
 

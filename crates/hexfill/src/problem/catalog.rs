@@ -1,4 +1,6 @@
 //! The catalogue: named problems with their source and the best mesh known. `:name` is accepted wherever a surface is.
+//!
+//! Source: each entry names its own.
 
 use hexfill_io::{Format, MeshData};
 use std::fmt;

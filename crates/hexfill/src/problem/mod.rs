@@ -1,4 +1,6 @@
 //! [`Problem`]: a surface to fill, wherever it came from: a file, arrays, the catalogue, or a signature.
+//!
+//! Source: ours.
 
 pub mod catalog;
 mod error;

@@ -1,4 +1,6 @@
 //! Which way the quads of a surface face.
+//!
+//! Source: ours.
 
 use crate::problem::solids::depths;
 use hexfill_geometry::{cone, sub};
@@ -9,6 +11,8 @@ use hexfill_mesh::{QuadId, QuadSurface, VertexId};
 pub(super) fn face_outward(surface: &mut QuadSurface, points: &[[f64; 3]]) -> usize {
     let depths = depths(surface, points);
     let volumes = enclosed_volumes(surface, points);
+    // An outer component faces out, a cavity into the hole, which is out of the solid too: signs alternate with
+    // depth.
     let wrong: Vec<bool> = depths
         .iter()
         .zip(volumes)
@@ -43,6 +47,7 @@ fn enclosed_volumes(surface: &QuadSurface, points: &[[f64; 3]]) -> Vec<f64> {
         let quad = quad.map(at);
         let origin = *origin[component].get_or_insert(quad[0]);
         let [a, b, c, d] = quad.map(|p| sub(p, origin));
+        // Both ways to cut a bent quad, so that the answer does not depend on where its list begins.
         volume[component] += cone([a, b, c, d]) + cone([b, c, d, a]);
     }
     volume

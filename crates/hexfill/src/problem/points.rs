@@ -1,4 +1,6 @@
 //! The positions an engine works with.
+//!
+//! Source: ours.
 
 use crate::problem::Problem;
 use hexfill_embed::canonical_polyhedron;

@@ -1,4 +1,6 @@
 //! Positions of any size: those far larger or smaller than 1 are scaled by a power of two, which changes no digit.
+//!
+//! Source: ours.
 
 use hexfill_geometry::Vector;
 use std::borrow::Cow;

@@ -1,11 +1,13 @@
 //! Surfaces of several components: which lies inside which. A solid is a component that faces outward with the cavities in it; an island in a
 //! cavity is a solid of its own.
+//!
+//! Source: ours.
 
 use hexfill_geometry::halves;
 use hexfill_mesh::{QuadId, QuadSurface, VertexId};
 
 /// Which other components each component lies in: an even number for an outer boundary, an odd one for the boundary of a cavity. Exact for
-/// disjoint closed surfaces; whatever the rounding says where surfaces cross.
+/// disjoint closed surfaces; surfaces that cross lie apart, as a rule.
 fn holders(surface: &QuadSurface, points: &[[f64; 3]]) -> Vec<Vec<usize>> {
     let mut triangles: Vec<Vec<[[f64; 3]; 3]>> = vec![Vec::new(); surface.n_components()];
     for (q, quad) in surface.quads().iter().enumerate() {

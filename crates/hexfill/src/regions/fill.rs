@@ -1,4 +1,6 @@
 //! [`fill_regions`]: each region by itself, and all put together.
+//!
+//! Source: ours.
 
 use crate::best::{PlaceOptions, PlacedFill, fill_placed};
 use crate::fill::filled::{ENGINE, LAYER};
@@ -88,7 +90,7 @@ pub fn fill_regions(
     let mut pillowed = options.clone();
     // Behind a pillow every wall quad has a hex of its own, so two regions share a quad, an edge or a vertex of the
     // wall and no more.
-    pillowed.shell.pillows = vec![1];
+    pillowed.shell = pillowed.shell.with_pillows(vec![1]);
     pillowed.strategy = Strategy::Shell;
     let filled = fill_once(data, regions, &pillowed, how, ctx)?;
     fits(&filled.data).map_err(|rules| RegionsError::DoNotFit { rules })?;
@@ -122,6 +124,7 @@ fn fill_once(
         if let Some((filled, placed)) = fill.meshes.first() {
             let own = region.points.len();
             let first = all.points.len() as u32;
+            // The region's own points are the file's, so neighbouring regions share them and fit without being glued.
             let number = |v: u32| region.points.get(v as usize).copied().unwrap_or_else(|| first + v - own as u32);
             all.hexes.extend(filled.mesh.hexes_raw().into_iter().map(|hex| hex.map(number)));
             tags.resize(all.hexes.len(), i as i64 + 1);

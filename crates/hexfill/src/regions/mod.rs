@@ -3,6 +3,8 @@
 //! Every face has two sides. Round an edge the faces are sorted by angle; between one and the next lies one region, whose sides there belong together.
 //! So sides fall into shells: closed surfaces, seen from the region they bound. A shell of positive volume bounds a region from outside; one of
 //! negative volume is a cavity of the region it lies in, or the outside of everything. Regions that hexes of the file fill already are left out.
+//!
+//! Source: ours.
 
 pub(crate) mod error;
 pub(crate) mod fill;
@@ -53,6 +55,7 @@ pub fn regions(name: &str, data: &MeshData) -> Result<Vec<Region>, RegionsError>
     let of_shell: Vec<Vec<[u32; 4]>> =
         shells.iter().map(|sides| sides.iter().map(|&s| outward(&walls, s)).collect()).collect();
     let at = |quad: [u32; 4]| quad.map(|v| points[v as usize]);
+    // From a point of the shell itself: far from the origin the sign would drown in rounding.
     let volume = |quads: &[[u32; 4]]| {
         let origin = points[quads[0][0] as usize];
         quads.iter().map(|q| cone(at(*q).map(|p| sub(p, origin)))).sum::<f64>()
@@ -60,6 +63,7 @@ pub fn regions(name: &str, data: &MeshData) -> Result<Vec<Region>, RegionsError>
     let volumes: Vec<f64> = of_shell.iter().map(|quads| volume(quads)).collect();
     let triangles: Vec<Vec<[Vector; 3]>> =
         of_shell.iter().map(|quads| quads.iter().flat_map(|q| halves(at(*q))).collect()).collect();
+    // Of two shells, the two sides of one surface, none lies in the other.
     let holders = if shells.len() > 2 { holders(&triangles) } else { vec![Vec::new(); shells.len()] };
     let mut parts: BTreeMap<usize, Vec<usize>> =
         (0..shells.len()).filter(|&i| volumes[i] > 0.0).map(|i| (i, vec![i])).collect();
@@ -79,6 +83,8 @@ pub fn regions(name: &str, data: &MeshData) -> Result<Vec<Region>, RegionsError>
             continue;
         }
         let all: BTreeSet<u32> = sides.iter().copied().collect();
+        // Both sides of a face in one region: a wall that ends inside. Filled as it is, its quads would be glued to
+        // each other or left open.
         let baffles: Offenders<QuadId> =
             sides.iter().filter(|s| s.is_multiple_of(2) && all.contains(&(**s ^ 1))).map(|s| QuadId(s / 2)).collect();
         if !baffles.is_empty() {

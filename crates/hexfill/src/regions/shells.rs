@@ -1,4 +1,6 @@
 //! Faces with their two sides, and the shells that sides make round regions.
+//!
+//! Source: ours.
 
 use crate::regions::error::RegionsError;
 use hexfill_geometry::{Vector, cone, cross, direction, dot, midpoint, sub};
@@ -45,6 +47,7 @@ pub(super) fn walls(data: &MeshData) -> (Vec<[u32; 4]>, Vec<bool>) {
                 index.insert(key, walls.len() - 1);
                 walls.len() - 1
             }
+            // Between two hexes of the file, and no face of it: nothing to see there.
             None => continue,
         };
         // Facets face out of their hex, which lies behind them.
@@ -62,6 +65,7 @@ pub(super) fn walls(data: &MeshData) -> (Vec<[u32; 4]>, Vec<bool>) {
 /// Hexes of negative volume.
 pub(super) fn inside_out(hexes: &[[u32; 8]], points: &[Vector]) -> Offenders<HexId> {
     let volume = |hex: &[u32; 8]| {
+        // From a corner of its own, as far from the origin the sign would be rounding.
         let at = |k: usize| sub(points[hex[k] as usize], points[hex[0] as usize]);
         cube::FACETS.iter().map(|facet| cone(facet.map(at))).sum::<f64>()
     };
@@ -120,6 +124,7 @@ fn angle(quad: [u32; 4], [a, b]: [u32; 2], points: &[Vector]) -> f64 {
     let at = |v: u32| points[v as usize];
     let others: Vec<Vector> = quad.into_iter().filter(|&v| v != a && v != b).map(at).collect();
     let along = direction(at(a), at(b)).unwrap_or([0.0, 0.0, 1.0]);
+    // Towards the far side's middle: of a bent quad both far corners count.
     let away = sub(others.get(1).map_or(others[0], |&other| midpoint(others[0], other)), midpoint(at(a), at(b)));
     // The axis least along the edge gives the frame.
     let k = (0..3).min_by(|&i, &j| along[i].abs().total_cmp(&along[j].abs())).unwrap_or(0);

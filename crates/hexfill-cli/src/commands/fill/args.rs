@@ -107,7 +107,7 @@ pub(crate) struct FillArgs {
 
 #[derive(Clone, Copy, PartialEq, Eq, Debug, clap::ValueEnum)]
 pub(super) enum StrategyArg {
-    /// Atlas, shelling, inward flips, construction: the best mesh of them (see --prefer).
+    /// Atlas, shelling, laying, inward flips, construction: the best mesh of them (see --prefer).
     Auto,
     /// Shelling only: the surface is swept inward by its own dual curves.
     Shell,

@@ -4,6 +4,8 @@
 //! A point on the boundary is drawn onto a neighbour if the tets allow it. Else it moves inward, and the flat
 //! polygon round it is triangulated without it: the new triangles and the moved point are new tets, which it sees
 //! because it lies on the inner side of their planes.
+//!
+//! Source: George, Borouchaki, Saltel 2003 and Si and Gärtner 2005 for points that leave the boundary again; the moves are ours.
 
 use super::conform::TriangleId;
 use super::solid::{Solid, unit_or_zero};
@@ -173,6 +175,7 @@ impl Solid {
                     let share = self.share([polygon[i], polygon[k], polygon[j]], tag);
                     share.min(best[i * n + k].0).min(best[k * n + j].0)
                 };
+                // Also bad parts are kept: whether the whole can be cut is asked once, at the end.
                 let mut found = (f64::NEG_INFINITY, i + 1);
                 for k in i + 1..j {
                     let here = worst(k);
@@ -210,6 +213,9 @@ impl Solid {
             }
             inward = sub(inward, self.normals[*tag]);
         }
+        // The new tets stand on the polygons that close the boundary below the point. Where it has to go to make all
+        // of them positive depends on them: against the normals on a smooth part, towards its neighbours where the
+        // boundary bends in.
         let mut tets = self.star(v);
         tets.extend(faces.iter().map(|([a, b, c], _)| [v, *a, *b, *c]));
         let mut trial = tets.clone();

@@ -7,6 +7,8 @@
 //! No two-dimensional triangulation is kept: the faces whose corners all belong to a triangle tile it iff its edges are
 //! there and no face has a free side. Ties need no care, the faces are those that the tetrahedra chose.
 //! Rounded points of one triangle may be the corners of a flat tet; [`Conforming::inside`] leaves such tets outside.
+//!
+//! Source: Ruppert 1995 (concentric shells) and Shewchuk 1998 (points in diametral balls); that no two-dimensional triangulation is kept is ours.
 
 use super::mesh::{Delaunay, orient};
 use crate::core::complex::{OUTWARD, TET_EDGES};

@@ -3,6 +3,8 @@
 //! Rounded points that lie almost on a circle or in a plane make tets with hardly any volume (a Delaunay tetrahedralisation
 //! takes them as they come), and such tets bar every move of their corners. Removing an edge (Freitag and Ollivier-Gooch 1997)
 //! tries all triangulations of the ring of vertices round it, by dynamic programming (Klincsek 1980). No flip touches the boundary.
+//!
+//! Source: Freitag and Ollivier-Gooch 1997 (removing edges), Klincsek 1980 (the best triangulation of a ring).
 
 use super::solid::{FLOOR_INSIDE, Solid};
 use crate::core::complex::{OUTWARD, TET_EDGES};
@@ -148,6 +150,8 @@ impl Solid {
         let tet = self.tets[t];
         let v = self.points.next_id();
         let mut best: Option<(f64, Vector, Exchange)> = None;
+        // A flat tet that no exchange of tets mends has corners near a plane that cannot all be moved. A point on one
+        // of its inner edges, pushed out of the plane, opens it; edges of the boundary are not to be touched.
         for [i, j] in TET_EDGES {
             let (a, b) = (tet[i], tet[j]);
             if self.faces_at[a].iter().any(|&f| self.faces[f].0.contains(&b)) {
@@ -166,6 +170,7 @@ impl Solid {
             });
             let reach = [sub(p, q), sub(x, y), sub(y, z)].map(|d| dot(d, d)).into_iter().fold(0.0, f64::max).sqrt();
             let mut trial = new.clone();
+            // From far to near, since with points near a plane the room is a thin cone whose width nobody knows.
             let mut found = (0.0, middle, 0.0);
             for normal in normals {
                 let length = norm(normal);
@@ -258,6 +263,7 @@ impl Solid {
                     if parts <= found.0 {
                         continue;
                     }
+                    // Above and below the triangle one tet each, to the two ends of the edge that goes.
                     let [p, q] = ring.both(i, k, j).map(|t| self.quality(t));
                     let worst = p.min(q).min(parts);
                     if worst > found.0 {

@@ -5,6 +5,8 @@
 //! circumsphere of each tet whose radius is long beside its shortest edge, or nearer to that edge. A point is passed over if it lies outside, or so
 //! near to the surface that a face of the surface would go, or lies in its smallest ball: no point is added to the boundary here.
 //! Most of the points are removed again later, as far as that leaves tets that are good enough (`removal.rs`).
+//!
+//! Source: Shewchuk 1998; Chew 1989, Ruppert 1995; Üngör 2004 (points off the centre).
 
 use super::conform::{Conforming, Failure, Origin};
 use crate::core::complex::{OUTWARD, TET_EDGES};

@@ -5,6 +5,8 @@
 //! whose plane the point lies would have the point strictly inside the circumspheres on both of its sides. So every tet
 //! is positively oriented, always. The points live in one huge tet; its four corners are vertices like all others.
 //! Invariant: `around[t][i]` is the tet across the face of `t` opposite its vertex `i`, none at the huge tet.
+//!
+//! Source: Bowyer 1981, Watson 1981; Edelsbrunner 1990 (why the walk to a point ends); Shewchuk 1997 (the predicates).
 
 use crate::core::complex::OUTWARD;
 use crate::ids::TetId;

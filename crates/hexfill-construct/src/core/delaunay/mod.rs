@@ -9,6 +9,8 @@
 //! All decisions about orientation are exact (adaptive predicates, Shewchuk 1997), and no random choice is made. A
 //! surface that meets itself is refused: its triangles cannot all be faces, so step 2 runs out of points or step 3
 //! finds sides that contradict each other.
+//!
+//! Source: the papers of each step, named on its page; the order and the exactness throughout are ours.
 
 mod boundary;
 mod conform;
@@ -76,6 +78,7 @@ impl DelaunayTets {
         if let Some(v) = own.iter().position(|p| p.iter().any(|x| !x.is_finite() || x.abs() > 1e60)) {
             return Err(MissingInterior::PositionNotFinite { vertex: used.vertices[v] }.into());
         }
+        // Refused here with the name of the quad: later it would show as points that run out.
         let flat = |t: &[VertexId; 3]| {
             let [a, b, c] = t.map(|v| points[v.index()]);
             let sides = [sub(b, a), sub(c, b), sub(a, c)];
@@ -89,9 +92,13 @@ impl DelaunayTets {
         let budget = self.points_per_triangle.saturating_mul(triangles.len());
         let mut conforming = Conforming::new(&own, &triangles, budget)?;
         conforming.refine(ctx)?;
+        // Points inside make better tets and take time that grows faster than the surface; beyond this size a tet
+        // with a long edge is the lesser evil.
         if triangles.len() <= GRADED_TRIANGLES {
             conforming.grade(ctx)?;
         }
+        // From here on no tet is a Delaunay tet any more. What is kept is that all are positive and that the boundary
+        // is a refinement of the one asked for.
         let mut solid = Solid::new(conforming.inside()?, &triangles, own.len());
         if let Err(given) = solid.clear_boundary(ctx).map_err(Failure::Stopped)? {
             return Err(MissingInterior::PointsOnBoundary { given }.into());
@@ -101,6 +108,7 @@ impl DelaunayTets {
         ctx.report("tetrahedra", tets.len() as u64, None, || {
             format!("{} inner points, least quality {least:.2e}", found.len() - own.len())
         });
+        // Back to the surface's own numbers; new points follow them, as everywhere.
         let tets = tets.into_iter().map(|t| t.map(|v| used.back(v))).collect();
         let mut all = points.to_vec();
         all.extend(&found[own.len()..]);

@@ -1,4 +1,6 @@
 //! Inner points are removed as long as the tets stay good enough, and those that stay are moved to better places.
+//!
+//! Source: Freitag and Ollivier-Gooch 1997 (smoothing beside swapping); what is good enough is ours.
 
 use super::solid::{FLOOR_INSIDE, Solid};
 use hexfill_mesh::{Context, StopReason, VertexId};

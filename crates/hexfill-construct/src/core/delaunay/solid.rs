@@ -2,6 +2,8 @@
 //!
 //! Every edit replaces the star of one vertex. The star is a polyhedron; if its new tets are all positively oriented and
 //! have its boundary, they tile it, so nothing else has to be looked at. Orientation is exact.
+//!
+//! Source: ours.
 
 use super::conform::Inside;
 use super::conform::TriangleId;

@@ -2,6 +2,8 @@
 //!
 //! Edges and faces get names: those of the sphere's edges (merged where fans are glued) and spokes from the apex to every copy;
 //! the sphere's triangles and walls from the apex over every edge. So an apex may have several edges to one vertex.
+//!
+//! Source: Eppstein 1999 (the cone); gluing the fans again is ours.
 
 use super::cutting::Cutting;
 use super::prism::{PRISM_TETS, Prism, SIDES};
@@ -81,6 +83,8 @@ impl Names {
         for d in s.ids() {
             same_edge.union(d, s.twin[d]);
         }
+        // The two copies of a fan triangle are one face of the solid: cutting along the disk is undone, and the genus
+        // is back.
         let mut same_face: IdVec<GonId, GonId> = (0..s.n_gons()).map(GonId::new).collect();
         for &[l, r] in &cutting.glued {
             same_face[r] = l;
@@ -104,6 +108,7 @@ impl Names {
             }
         }
         let face = same_face.iter().map(|&g| face[g]).collect();
+        // Walls and spokes belong to the one cone, of which no part is glued: each copy has its own.
         let mut wall = IdVec::filled(FaceId::NONE, s.len());
         for d in s.ids().filter(|&d| d < s.twin[d]) {
             let name = take(&mut n_faces, FaceId::new);

@@ -1,6 +1,8 @@
 //! The surface while it is cut: triangles over copies of vertices, with the interior's homology on the darts.
 //!
 //! Cutting along a loop that bounds a disk and capping both sides is surgery: the genus drops by one if the loop does not separate.
+//!
+//! Source: Erickson 2014 needs tetrahedra; to have them by surgery on loops is ours, from textbooks (Hatcher 2002, chapter 1).
 
 use super::prism::Prism;
 use crate::surface::polygons::{DartId, Darts, GonId};

@@ -2,6 +2,9 @@
 //!
 //! A loop that does not bound on the surface but does inside is found among the fundamental loops of breadth-first trees (as shortest
 //! non-separating loops are, Erickson and Har-Peled 2004), and where these do not have one, in a covering graph.
+//!
+//! Source: Erickson and Har-Peled 2004 for fundamental loops of shortest paths; the homology that decides is of `surface/linking.rs`, the covering graph
+//! ours.
 
 use super::cutting::Cutting;
 use crate::error::ConstructError;
@@ -146,6 +149,8 @@ fn disk_in_cover(
 ) -> Result<Option<Vec<DartId>>, ConstructError> {
     let s = &cutting.s;
     let first = s.vertex_darts();
+    // Loops that need the covering graph run through a prism, so they pass a corner of one: roots elsewhere would
+    // only find them later.
     let corners = cutting.prisms.iter().flat_map(|p| p.sides).flat_map(|g| s.sides(g));
     let mut roots: Vec<VertexId> = corners.map(|d| s.origin[d]).collect();
     roots.sort_unstable();

@@ -1,4 +1,6 @@
 //! Components of one solid are joined by prisms: their connected sum.
+//!
+//! Source: ours; connected sums are textbook knowledge.
 
 use super::cutting::Cutting;
 use super::prism::{Prism, SIDES};

@@ -18,6 +18,8 @@
 //! not of that interior. The report names the maker `handlebody` so that this is visible.
 //!
 //! `joining.rs` joins components by prisms -> `disk.rs` finds a loop -> `cutting.rs` cuts along it -> `coning.rs` makes the tetrahedra.
+//!
+//! Source: ours, with Erickson and Har-Peled 2004 for the loops.
 
 mod coning;
 mod cutting;

@@ -1,4 +1,6 @@
 //! A prism of three tets between a triangle of one component and a triangle of another.
+//!
+//! Source: ours.
 
 use crate::surface::polygons::GonId;
 use hexfill_mesh::VertexId;

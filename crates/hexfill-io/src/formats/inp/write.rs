@@ -1,4 +1,6 @@
 //! Writing Abaqus and CalculiX input.
+//!
+//! Source: the Abaqus keywords guide; the CalculiX manual.
 
 use super::BOUNDARY;
 use crate::data::{MeshData, TagOn};

@@ -1,4 +1,6 @@
 //! What versions 2.2 and 4.1 share: element types, node numbers, sections that are read alike.
+//!
+//! Source: the Gmsh manual, "MSH file format".
 
 use crate::assembly::{Assembly, Slot, Values};
 use crate::data::MeshData;

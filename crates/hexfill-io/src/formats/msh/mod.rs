@@ -4,6 +4,8 @@
 //! Tags are Gmsh's physical groups. Where a file has none, the elementary entities take their place if there are several.
 //! A tag with several names is in several physical groups; version 2.2, whose elements have one group, joins the names with `+`.
 //! Tags of points, which Gmsh does not know, are written as node data named `tag`.
+//!
+//! Source: the Gmsh manual, "MSH file format" and "MSH file format version 2".
 
 mod common;
 mod physical;

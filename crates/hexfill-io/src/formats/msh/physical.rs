@@ -1,4 +1,6 @@
 //! Physical groups: names and tags as Gmsh has them.
+//!
+//! Source: the Gmsh manual, "MSH file format".
 
 use super::common::{UNTAGGED, dimension, elements};
 use crate::data::{MeshData, TagOn};

@@ -1,4 +1,6 @@
 //! The header, which tells the version, and what a whole file must have.
+//!
+//! Source: the Gmsh manual, "MSH file format".
 
 use super::common::{Reader, skip};
 use super::{v2, v4};

@@ -1,4 +1,6 @@
 //! Data sections of both versions, written.
+//!
+//! Source: the Gmsh manual, "MSH file format".
 
 use super::common::{HEX, QUAD, elements, straight};
 use crate::arrays::{self, CellColumn, component};

@@ -1,4 +1,6 @@
 //! MSH 2.2: nodes with numbers, elements with numbers and two tags (physical group, elementary entity).
+//!
+//! Source: the Gmsh manual, "MSH file format version 2".
 
 use super::common::{Reader, dimension, elements, nodes_of, write_nodes};
 use super::physical::Physical;

@@ -1,4 +1,6 @@
 //! MSH 4.1: nodes and elements in blocks, each block on an entity; entities carry the physical groups.
+//!
+//! Source: the Gmsh manual, "MSH file format".
 
 use super::common::{Reader, dimension, elements, nodes_of, write_nodes};
 use super::physical::Physical;

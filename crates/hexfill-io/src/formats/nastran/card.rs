@@ -1,4 +1,6 @@
 //! [`Card`]: one card of bulk data with its continuations, in fields of 8 or 16 columns or between commas.
+//!
+//! Source: the Nastran guide.
 
 use crate::error::ReadError;
 use crate::source::Source;

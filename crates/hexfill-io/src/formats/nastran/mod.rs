@@ -3,6 +3,8 @@
 //! Fields are 8 columns wide, 16 where the name of a card or a continuation ends (begins) with `*`, or stand between commas. Cards go on in lines
 //! whose first field is empty or begins with `+` or `*`. The property of an element is its tag, since it is what boundary conditions and materials hang
 //! on; its name is taken from comments of HyperMesh, ANSA and this program. Elements may come before the points they use.
+//!
+//! Source: the Nastran guide.
 
 mod card;
 mod write;

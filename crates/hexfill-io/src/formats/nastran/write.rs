@@ -1,4 +1,6 @@
 //! Writing Nastran bulk data: wide fields for points, narrow ones for elements.
+//!
+//! Source: the Nastran guide.
 
 use super::PROPERTY_LINE;
 use super::card::parse_real;

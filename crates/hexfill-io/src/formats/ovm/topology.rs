@@ -3,6 +3,8 @@
 //! A facet of a cell has three or four sides, so a face is kept as four half-edges and known by four vertices, sorted as far as
 //! its cycle allows. Edges and faces hang in a chain at their smallest vertex: chains are short in a mesh, and what is near in the
 //! mesh is near in memory.
+//!
+//! Source: ours.
 
 /// Fills the fourth place of a triangle.
 const NONE: u32 = u32::MAX;

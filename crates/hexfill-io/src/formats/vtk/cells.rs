@@ -1,4 +1,6 @@
 //! The cell types of VTK, as numbered in `vtkCellType.h`, shared by legacy and XML files.
+//!
+//! Source: the VTK formats.
 
 use crate::assembly::{Assembly, Slot};
 use crate::data::MeshData;

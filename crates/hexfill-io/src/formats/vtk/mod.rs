@@ -1,5 +1,7 @@
 //! Legacy VTK files. Read: versions 2.0 to 5.1, ASCII and binary, `POLYDATA` and `UNSTRUCTURED_GRID`. Written: version 3.0
 //! with one point and one cell a line, the only flavour that VTK, meshio, Gmsh and HexaLab all read.
+//!
+//! Source: the VTK formats, "Simple Legacy Formats".
 
 pub(crate) mod cells;
 mod read;

@@ -1,4 +1,6 @@
 //! Reading legacy VTK.
+//!
+//! Source: the VTK formats, "Simple Legacy Formats".
 
 use super::{Scalar, cells};
 use crate::assembly::{Assembly, Slot, Values};

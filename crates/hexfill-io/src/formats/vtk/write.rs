@@ -1,5 +1,7 @@
 //! Writing legacy VTK, version 3.0: always an unstructured grid, faces first, then hexes and the other cells. Names of tags are
 //! field data: for each name its tags and the dimensions of what they are on.
+//!
+//! Source: the VTK formats, "Simple Legacy Formats".
 
 use super::cells;
 use crate::arrays::{self, component};

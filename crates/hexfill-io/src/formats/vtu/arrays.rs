@@ -1,4 +1,6 @@
 //! The bytes of VTK XML arrays: base64 with padding in the middle, block headers, zlib.
+//!
+//! Source: the VTK formats, "XML File Formats"; RFC 4648 (base64), RFC 1950 (zlib).
 
 use crate::source::reserve;
 use flate2::read::ZlibDecoder;

@@ -1,5 +1,7 @@
 //! Reading VTK XML. The whole file is kept in memory once, because appended arrays are addressed by offset; array texts are
 //! borrowed from it.
+//!
+//! Source: the VTK formats, "XML File Formats".
 
 use super::arrays::{Bytes, Layout, unpack};
 use crate::assembly::{Assembly, Slot, Values};

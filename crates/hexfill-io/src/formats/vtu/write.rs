@@ -1,5 +1,7 @@
 //! Writing `.vtu`: one piece, arrays as ASCII (one point, one cell a line) or base64 in place. Names of tags are field data: for
 //! each name its tags and the dimensions of what they are on.
+//!
+//! Source: the VTK formats, "XML File Formats".
 
 use crate::arrays;
 use crate::data::MeshData;

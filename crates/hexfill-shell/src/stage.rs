@@ -1,0 +1,38 @@
+//! [`Stage`]: which step of the engine glued a hex.
+//!
+//! Source: ours.
+
+use std::fmt;
+
+/// Which step of the shelling hexes come from, in the order of the steps.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+pub enum Stage {
+    /// A cell of the grid into which the surface unrolls.
+    Grid,
+    /// A column between mirror images.
+    Columns,
+    /// The layer of one hex under every quad.
+    Pillows,
+    /// Cuts a handle, or joins a cavity to the outside.
+    Plugs,
+    /// Swept in whole layers.
+    Layers,
+    /// Swept by flips of the dual curves.
+    Flips,
+    /// Fills what the sweep left.
+    Residual,
+}
+
+impl fmt::Display for Stage {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Grid => "grid",
+            Self::Columns => "columns",
+            Self::Pillows => "pillows",
+            Self::Plugs => "plugs",
+            Self::Layers => "layers",
+            Self::Flips => "flips",
+            Self::Residual => "residual",
+        })
+    }
+}
