@@ -33,8 +33,8 @@ pub(crate) fn smaller_filling(
         Some(ball) => HexMesh::try_new(ball.n_vertices as usize, &ball.hexes).ok()?,
         None => any_filling(sphere, atlas, &ctx)?,
     };
-    let options = SimplifyOptions::default().with_max_quads(MAX_CAP).with_balls(balls).with_collapse(Collapse::Nothing);
-    let made = simplify(&mesh, atlas, &options, &ctx);
+    let options = SimplifyOptions::default().with_max_quads(MAX_CAP);
+    let made = simplify(&mesh, atlas, &options.with_balls(balls).with_collapse(Collapse::Nothing), &ctx);
     if made.report.after >= limit as usize {
         return None;
     }
