@@ -48,14 +48,14 @@ pub(crate) fn is_broken_pipe(error: &anyhow::Error) -> bool {
         .any(|e| e.downcast_ref::<std::io::Error>().is_some_and(|e| e.kind() == std::io::ErrorKind::BrokenPipe))
 }
 
-/// The first SIGINT or SIGTERM asks the work to stop; the second ends the process at once.
-pub(crate) fn install_signal_handler() -> &'static AtomicBool {
+/// The first SIGINT or SIGTERM asks the work to stop, which is told; the second ends the process at once.
+pub(crate) fn install_signal_handler(tell: fn(&str)) -> &'static AtomicBool {
     static CANCEL: AtomicBool = AtomicBool::new(false);
-    let installed = ctrlc::set_handler(|| {
+    let installed = ctrlc::set_handler(move || {
         if CANCEL.swap(true, Ordering::Relaxed) {
             std::process::exit(Exit::Stopped as i32);
         }
-        crate::console::tell("hexfill: stopping; once more to quit at once");
+        tell("hexfill: stopping; once more to quit at once");
     });
     // Without a handler the signals keep their default meaning: the process ends.
     drop(installed);

@@ -118,7 +118,7 @@ fn run() -> ExitCode {
         }
     };
     let console = Console::new(&cli.common);
-    let cancel = exit::install_signal_handler();
+    let cancel = exit::install_signal_handler(console::tell);
     if let Some(threads) = cli.common.threads {
         if threads == 0 {
             console.fail(&anyhow::anyhow!("--threads 0: give at least 1"), Exit::Usage as u8);

@@ -3,6 +3,8 @@
 //! A filling with too many hexes is [simplified](crate::simplify()), its balls looked up in all that is known, larger cavities and steps included, and
 //! [shelled anew](crate::narrow_shelling) if that brought fewer. A class without a filling starts from one found by [inward flips](crate::fill_from_atlas),
 //! however large. Fillings made smaller join what is known, so the next round meets them.
+//!
+//! Source: Verhetsel et al. 2018 (exchange of balls); with an atlas, ours.
 
 use crate::atlas::Atlas;
 use crate::cavity::Cavity;

@@ -3,6 +3,8 @@
 //! An atlas stores a filling as flips, and no boundary on the way may have more quads than its [cap](MAX_CAP). A filling that comes as a mesh (from
 //! [`simplify`](crate::simplify())) needs such an order. It is searched for by a beam over sets of hexes that are balls, those with the fewest quads first;
 //! `None` means "not found".
+//!
+//! Source: ours.
 
 use crate::ball::{canonical_cavity, mirror_hex};
 use crate::canonical::Canonical;

@@ -3,6 +3,8 @@
 //! An exchange is admitted if the vertices it brings can be placed so that, among the hexes it puts in, no more fail the judge's certificate than among
 //! those it takes out, and the smallest certified scaled Jacobian is no smaller. No vertex that stays is moved. So the number of hexes that are not certified and the
 //! worst certified value of the whole mesh never get worse.
+//!
+//! Source: ours.
 
 use hexfill_check::{Judged, cell_quality};
 use hexfill_embed::{tutte_start, untangle_near};

@@ -68,7 +68,7 @@ pub(crate) fn families(verify: bool, ctx: &Context<'_>) -> anyhow::Result<Vec<Fa
             per_quad: true,
             published: Some(78),
             published_by: Some(VERHETSEL_2019),
-            note: "a cell and two tetrahedra for each quad, where the matching found is perfect".to_owned(),
+            note: "a cell and two tetrahedra for each quad if the matching found is perfect, which is not proved (the published number is)".to_owned(),
             mesh_command: Some("hexfill fill SURFACE --strategy construct --no-embed -o MESH"),
             verified: None,
         },
@@ -90,7 +90,16 @@ pub(crate) fn line(family: &Family) -> String {
     let a_quad = if family.per_quad { " a quad" } else { "" };
     let published = family.published.zip(family.published_by);
     let published = published.map_or(String::new(), |(n, by)| format!("; published {n}{a_quad} ({by})"));
-    let verified = super::records::verdict(family.verified);
+    let verified = verdict(family.verified);
     let Family { problem, hexes, note, .. } = family;
     format!("{problem}: at most {hexes} hexes{a_quad}{published}; {note}{verified}")
+}
+
+/// What the judge said, at the end of a line.
+pub(super) fn verdict(verified: Option<bool>) -> &'static str {
+    match verified {
+        Some(true) => "; judged: a ball, the boundary exact",
+        Some(false) => "; REFUSED by the judge",
+        None => "",
+    }
 }

@@ -1,6 +1,6 @@
 //! `hexfill records`: what is known of the problems whose best mesh the catalogue holds and of whole families of surfaces, and what was proved.
 
-use super::families::{self, families};
+use super::families::{self, families, verdict};
 use crate::console::Console;
 use crate::exit::Exit;
 use hexfill::catalog::{self, Entry, Record};
@@ -86,15 +86,6 @@ fn stands(mesh: &MeshData, problem: &Problem, ctx: &Context<'_>) -> bool {
         let report = judge(judged, &Options::default().with_up_to(Level::L3), ctx);
         report.passed(Level::L3) && report.facts.ball == Some(Ball::Yes)
     })
-}
-
-/// What the judge said, at the end of a line.
-pub(super) fn verdict(verified: Option<bool>) -> &'static str {
-    match verified {
-        Some(true) => "; judged: a ball, the boundary exact",
-        Some(false) => "; REFUSED by the judge",
-        None => "",
-    }
 }
 
 fn line(row: &Row) -> String {

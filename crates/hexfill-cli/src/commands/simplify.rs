@@ -6,7 +6,7 @@ use crate::files;
 use anyhow::{Context as _, bail};
 use hexfill::io::Format;
 use hexfill::unstable::search::Atlas;
-use hexfill::{Collapse, Context, SimplifyOptions, StopReason};
+use hexfill::{Collapse, Context, SimplifyOptions, SimplifyReport, StopReason};
 use serde::Serialize;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -124,22 +124,7 @@ pub(crate) fn run(args: &SimplifyArgs, console: &Console, ctx: &Context<'_>) -> 
     let quads = mesh.boundary_facets().count();
     let per_quad = report.after as f64 / quads.max(1) as f64;
     let seconds = start.elapsed().as_secs_f64();
-    let how = if report.after < report.before {
-        "connectivity: judged proper, boundary unchanged (L1-L3)"
-    } else {
-        "nothing smaller was found; the mesh is written as it was"
-    };
-    console.say(format!(
-        "{}: {} -> {} hexes ({per_quad:.1} per boundary quad), {} sheets and {} columns collapsed, {} balls tried",
-        args.mesh, report.before, report.after, report.sheets, report.columns, report.balls
-    ));
-    console.say(how);
-    if made.data.has_coordinates && report.after < report.before {
-        console.say(match args.keep_valid {
-            true => "geometry: vertices that stay were not moved, no certificate was lost",
-            false => "geometry: vertices that stay were not moved, new ones lie at means of their neighbours; run `hexfill embed` next",
-        });
-    }
+    say(args, &report, per_quad, made.data.has_coordinates, console);
     console.say(format!("written: {}", args.output));
     if console.json {
         console.print_json(&Output {
@@ -160,4 +145,24 @@ pub(crate) fn run(args: &SimplifyArgs, console: &Console, ctx: &Context<'_>) -> 
         })?;
     }
     Ok(Exit::of_stop(report.stop, Exit::Done))
+}
+
+/// What was done, in words.
+fn say(args: &SimplifyArgs, report: &SimplifyReport, per_quad: f64, has_coordinates: bool, console: &Console) {
+    let is_smaller = report.after < report.before;
+    console.say(format!(
+        "{}: {} -> {} hexes ({per_quad:.1} per boundary quad), {} sheets and {} columns collapsed, {} balls tried",
+        args.mesh, report.before, report.after, report.sheets, report.columns, report.balls
+    ));
+    console.say(if is_smaller {
+        "connectivity: judged proper, boundary unchanged (L1-L3)"
+    } else {
+        "nothing smaller was found; the mesh is written as it was"
+    });
+    if has_coordinates && is_smaller {
+        console.say(match args.keep_valid {
+            true => "geometry: vertices that stay were not moved, no certificate was lost",
+            false => "geometry: vertices that stay were not moved, new ones lie at means of their neighbours; run `hexfill embed` next",
+        });
+    }
 }

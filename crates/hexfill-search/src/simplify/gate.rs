@@ -1,4 +1,6 @@
 //! [`Gate`]: who may refuse an exchange that is proper, because of what this crate does not know (positions, say).
+//!
+//! Source: ours.
 
 /// Asked about each exchange before it is made. Vertices have the ids of the mesh at work: those of the input as they were; new ones, when an exchange
 /// brings them, ids from the input's number of vertices on or ids that are free again.
