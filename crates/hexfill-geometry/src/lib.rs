@@ -8,7 +8,7 @@
 //!
 //! | question | verb |
 //! |---|---|
-//! | vectors as arrays | [`dot`], [`cross`], [`det`], [`unit`] and their like |
+//! | vectors as arrays | [`dot`], [`cross`], [`det`], [`unit()`] and their like |
 //! | the angle of a corner, the dihedral angle at an edge | [`corner_angle`], [`dihedral_angle`] |
 //! | inside or outside of a closed surface, and which of several surfaces lies in which | [`winding_number`], [`holders`] |
 //! | the best direction of one free edge, good directions of several | [`best_direction`], [`climb_star`] |
