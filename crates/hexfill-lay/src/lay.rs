@@ -6,8 +6,9 @@ use crate::fewer::without_sheets;
 use crate::frame::Frame;
 use crate::laid_mesh::LaidMesh;
 use crate::laying::{Laying, Underway};
-use crate::open_mesh::{OpenMesh, swept};
+use crate::open_mesh::{OpenMesh, Void, swept};
 use crate::patch::Patch;
+use crate::pieces::Pieces;
 use hexfill_geometry::Vector;
 use hexfill_mesh::{Context, HexMesh, QuadSurface};
 use rayon::prelude::*;
@@ -42,11 +43,40 @@ const LARGE: usize = 500;
 const PLANS: u64 = 12;
 
 /// Lays meshes for a surface whose vertices are at `points` (outward orientation), fewest hexes first; none if no sweep of it leaves one void that can be
-/// held open, or no attempt came to its end. At most one on surfaces of more than 500 quads. The same for any number of threads.
+/// held open, or no attempt came to its end. At most one on surfaces of more than 500 quads, which are cut across their waists first, and each piece laid for
+/// itself. The same for any number of threads.
 pub fn lay(surface: &QuadSurface, points: &[Vector], options: &LayOptions, ctx: &Context<'_>) -> Vec<LaidMesh> {
+    if let Some(laid) = in_pieces(surface, points, options, ctx) {
+        return vec![laid];
+    }
+    let most = if surface.n_quads() > LARGE { 1 } else { KEPT };
+    lay_whole(surface, points, options, Void::Left, most, ctx)
+}
+
+/// The mesh of a surface that is cut into pieces; `None` if it is not, or one of them cannot be filled.
+fn in_pieces(surface: &QuadSurface, points: &[Vector], options: &LayOptions, ctx: &Context<'_>) -> Option<LaidMesh> {
+    let pieces = Pieces::of(surface, points).filter(|pieces| pieces.pieces.len() > 1)?;
+    let laid = pieces.pieces.par_iter().map(|(piece, ids)| {
+        let meshes = lay_whole(piece, &pieces.points_of(ids), options, Void::LeftOrNot, 1, ctx);
+        meshes.into_iter().next()
+    });
+    let mut laid = pieces.joined(surface, laid.collect::<Option<_>>()?)?;
+    laid.points[..points.len()].copy_from_slice(points);
+    Some(laid)
+}
+
+/// [`lay`] without a cut, at most `most` meshes. Of several that are kept the one of fewest hexes comes first, a single one is that with fewest invalid hexes.
+fn lay_whole(
+    surface: &QuadSurface,
+    points: &[Vector],
+    options: &LayOptions,
+    void: Void,
+    most: usize,
+    ctx: &Context<'_>,
+) -> Vec<LaidMesh> {
     let frame = Frame::of(points);
     let within: Vec<Vector> = points.iter().map(|&p| frame.enter(p)).collect();
-    let open = swept(surface, &within, ctx);
+    let open = swept(surface, &within, void, ctx);
     if open.is_empty() {
         return Vec::new();
     }
@@ -71,11 +101,11 @@ pub fn lay(surface: &QuadSurface, points: &[Vector], options: &LayOptions, ctx: 
         let mut laid: Vec<LaidMesh> =
             filled.into_par_iter().filter_map(|filled| filled.whole(options.sheets, ctx)).collect();
         laid.sort_by_key(|laid| laid.mesh.n_hexes());
-        if surface.n_quads() > LARGE {
+        if most == 1 {
             // Stable: of those with fewest invalid hexes.
             laid.sort_by_key(|laid| laid.invalid);
-            laid.truncate(1);
         }
+        laid.truncate(most);
         for laid in &mut laid {
             laid.points.iter_mut().for_each(|p| *p = frame.leave(*p));
             laid.points[..points.len()].copy_from_slice(points);
@@ -119,6 +149,9 @@ impl<'a> Filled<'a> {
 
 /// Lays hexes until nothing is open. `None` if it jams, has more than `most` hexes, or is told to stop.
 fn to_the_end(mut laying: Laying, seed: u64, most: usize, ctx: &Context<'_>) -> Option<Laying> {
+    if laying.open.front.is_empty() {
+        return Some(laying);
+    }
     let mut plans = 0;
     // A plan knows nothing of what is outside: it needs a pillow between.
     laying.pillow(&mut [], ctx);

@@ -22,8 +22,10 @@ const ROUNDINGS: usize = 8;
 const MANY: u32 = 3;
 /// Hexes that are tried with more of their surroundings free.
 const TRIED_WIDER: usize = 6;
-/// After so many hexes all is rounded.
+/// After so many hexes all is rounded; where more hexes than these lie round the void, only so many rings round those laid since.
 const ROUNDED: usize = 4;
+const ALL_ROUNDED: usize = 600;
+const ROUNDED_RINGS: usize = 2;
 
 /// How long the untangler tries: a hex with one ring of free vertices, with more, rounding a pillow, rounding everything.
 const ONE_RING: OpenEffort = effort(20, 60, 0);
@@ -145,7 +147,7 @@ impl Laying {
 
     /// Untangles round the last hex, with so many rings free. Whether that made everything valid.
     fn finds_room(&mut self, rings: usize, ctx: &Context<'_>) -> bool {
-        let free = self.near_last(rings);
+        let free = self.near_last(1, rings);
         let effort = if rings == 1 { ONE_RING } else { MORE_RINGS };
         self.untangle(&free, effort, ctx) == [0, 0]
     }
@@ -203,14 +205,15 @@ impl Laying {
         copies
     }
 
-    /// Rounds everything after some hexes, unless that makes a cell bad.
+    /// Rounds what is laid after some hexes, unless that makes a cell bad.
     fn round_now_and_then(&mut self, ctx: &Context<'_>) {
         self.since += 1;
         if !self.since.is_multiple_of(ROUNDED) || self.open.front.is_empty() {
             return;
         }
         let before = self.open.points.clone();
-        let free = self.open.inner();
+        let is_large = self.open.hexes.len() > ALL_ROUNDED;
+        let free = if is_large { self.near_last(ROUNDED, ROUNDED_RINGS) } else { self.open.inner() };
         if self.untangle(&free, ROUND_ALL, ctx) != [0, 0] {
             self.open.points = before;
         }
@@ -220,10 +223,10 @@ impl Laying {
         self.open.untangle(free, effort, &Context { progress: None, ..*ctx })
     }
 
-    /// The vertices within so many rings of cells round the last hex, but for those of the surface.
-    fn near_last(&self, rings: usize) -> Vec<bool> {
+    /// The vertices within so many rings of cells round the last `count` hexes, but for those of the surface.
+    fn near_last(&self, count: usize, rings: usize) -> Vec<bool> {
         let mut near = vec![false; self.open.points.len()];
-        self.open.hexes.last().into_iter().flatten().for_each(|&v| near[v as usize] = true);
+        self.open.hexes.iter().rev().take(count).flatten().for_each(|&v| near[v as usize] = true);
         for _ in 0..rings {
             let before = near.clone();
             // The front's quads are cells too: the pyramids over them have to stay valid.

@@ -45,11 +45,14 @@ mod frame;
 mod laid_mesh;
 mod lay;
 mod laying;
+mod membrane;
 mod open_mesh;
 mod patch;
+mod pieces;
 mod plan;
 mod step;
 mod void_front;
+mod waist;
 
 pub use laid_mesh::LaidMesh;
 pub use lay::{LayOptions, lay};

@@ -3,7 +3,7 @@
 //! Source: ours.
 
 use crate::step::Step;
-use hexfill_embed::{Open, OpenEffort, open_start, untangle_near};
+use hexfill_embed::{Open, OpenEffort, open_start, tutte_start, untangle_near};
 use hexfill_geometry::Vector;
 use hexfill_mesh::{Context, HexMesh, QuadSurface};
 use hexfill_shell::{SweepOptions, Swept, sweep};
@@ -40,12 +40,21 @@ pub(crate) struct OpenMesh {
     pub(crate) forgiven: Vec<u32>,
 }
 
+/// Which sweeps are gone on from.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Void {
+    /// Those that leave a void: a sweep that closes is a mesh already, which others place.
+    Left,
+    /// Those that close, too.
+    LeftOrNot,
+}
+
 /// The best that sweeps with other ties leave, fewest forgiven hexes first, then fewest hexes as far as one can tell; none if no void can be held open.
-pub(crate) fn swept(surface: &QuadSurface, points: &[Vector], ctx: &Context<'_>) -> Vec<OpenMesh> {
+pub(crate) fn swept(surface: &QuadSurface, points: &[Vector], void: Void, ctx: &Context<'_>) -> Vec<OpenMesh> {
     let quiet = Context { progress: None, ..*ctx };
     let sweeps = (QUADS_SWEPT / surface.n_quads().max(1)).clamp(SWEEPS[0], SWEEPS[1]) as u64;
     let mut left: Vec<Swept> =
-        (0..sweeps).into_par_iter().filter_map(|i| left_open(surface, points, ctx.seed + i, &quiet)).collect();
+        (0..sweeps).into_par_iter().filter_map(|i| left_open(surface, points, void, ctx.seed + i, &quiet)).collect();
     // Many sweeps end alike.
     let mut seen = FxHashSet::default();
     left.retain(|swept| seen.insert(swept.hexes.clone()));
@@ -57,9 +66,12 @@ pub(crate) fn swept(surface: &QuadSurface, points: &[Vector], ctx: &Context<'_>)
 }
 
 /// What a sweep behind a pillow leaves, if that is one void of not too many quads.
-fn left_open(surface: &QuadSurface, points: &[Vector], seed: u64, ctx: &Context<'_>) -> Option<Swept> {
+fn left_open(surface: &QuadSurface, points: &[Vector], wanted: Void, seed: u64, ctx: &Context<'_>) -> Option<Swept> {
     let options = SweepOptions { pillows: 1, seed, ..SweepOptions::default() };
     let swept = sweep(surface, Some(points), &options, ctx);
+    if swept.front.is_empty() && wanted == Void::LeftOrNot && ctx.stop().is_none() {
+        return Some(swept);
+    }
     let is_small = (1..=MOST_OPEN).contains(&swept.front.len()) && ctx.stop().is_none();
     let (void, _) = QuadSurface::on_own_vertices(swept.front.clone()).ok().filter(|_| is_small)?;
     void.is_sphere().then_some(swept)
@@ -70,7 +82,12 @@ impl OpenMesh {
     fn placed(swept: Swept, n_quads: usize, surface: &[Vector], ctx: &Context<'_>) -> Option<Self> {
         let Swept { hexes, front, n_vertices, plugs, .. } = swept;
         let steps = Step::of_sweep(n_quads, plugs, hexes.len());
-        let (points, apex) = open_start(&hexes, &front, n_vertices as usize, surface);
+        let (points, apex) = if front.is_empty() {
+            let mesh = HexMesh::try_new(n_vertices as usize, &hexes).ok()?;
+            (tutte_start(&mesh, surface).ok()?, [0.0; 3])
+        } else {
+            open_start(&hexes, &front, n_vertices as usize, surface)
+        };
         let mut open = Self { hexes, steps, points, n_fixed: surface.len(), front, apex, forgiven: Vec::new() };
         let [bad, pyramids] = open.untangle(&open.inner(), EFFORT, ctx);
         // A pyramid that is not valid means that the apex does not see all of the void: no pillow could be put in

@@ -10,7 +10,7 @@ use hexfill_mesh::HexMesh;
 
 /// Rings of hexes round the void.
 const RINGS: usize = 4;
-/// Meshes of at most so many hexes are all patch.
+/// Meshes of at most so many hexes are all patch, and those without a void.
 const SMALL: usize = 600;
 
 /// The hexes round a void, on vertices of their own: those that stay come first.
@@ -27,7 +27,7 @@ impl Patch {
     /// What lies round the void of `open`.
     pub(crate) fn round(open: &OpenMesh) -> Self {
         let n = open.points.len();
-        let mut inside = vec![open.hexes.len() <= SMALL; open.hexes.len()];
+        let mut inside = vec![open.hexes.len() <= SMALL || open.front.is_empty(); open.hexes.len()];
         let mut touched = vec![false; n];
         open.front.iter().flatten().for_each(|&v| touched[v as usize] = true);
         for _ in 0..RINGS {

@@ -2,7 +2,7 @@
 
 use hexfill_check::{Judged, Level, Options, judge};
 use hexfill_lay::{LaidMesh, LayOptions, Step, lay};
-use hexfill_mesh::generate::{cube_surface, torus};
+use hexfill_mesh::generate::{cube_surface, torus, voxels};
 use hexfill_mesh::{Context, QuadSurface};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -17,10 +17,14 @@ fn radial() -> (QuadSurface, Points) {
 }
 
 fn assert_sound(surface: &QuadSurface, points: &[[f64; 3]], laid: &LaidMesh) {
-    assert!(laid.points[..points.len()] == *points, "the surface stays to the bit");
     let n = |step: Step| laid.steps.iter().filter(|s| **s == step).count();
     assert!(laid.steps.len() == laid.mesh.n_hexes() && n(Step::Laid) > 0 && n(Step::Sweep) > 0);
     assert!(n(Step::Pillow) <= surface.n_quads() && n(Step::Plug) == 0);
+    assert_judged(surface, points, laid);
+}
+
+fn assert_judged(surface: &QuadSurface, points: &[[f64; 3]], laid: &LaidMesh) {
+    assert!(laid.points[..points.len()] == *points, "the surface stays to the bit");
     let (hexes, quads) = (laid.mesh.hexes_raw(), surface.quads_raw());
     let judged = Judged::connectivity(laid.mesh.n_vertices(), &hexes).with_points(&laid.points).with_surface(&quads);
     let report = judge(&judged, &Options::default().with_up_to(Level::L5), &Context::default());
@@ -41,6 +45,17 @@ fn a_surface_that_no_sweep_embeds_gets_valid_meshes_of_few_hexes() {
     let again = three.install(|| lay(&surface, &points, &LayOptions::default(), &Context::default()));
     assert_eq!(made.len(), again.len());
     assert!(made.iter().zip(&again).all(|(a, b)| a.mesh == b.mesh && a.points == b.points));
+}
+
+/// Two blocks joined by a bar: cut across the bar, each piece filled for itself.
+#[test]
+fn a_body_with_a_waist_is_filled_in_pieces() {
+    let is_in = |[x, y, z]: [usize; 3]| x < 7 || x >= 11 || (2..5).contains(&y) && (2..5).contains(&z);
+    let (surface, cells) = voxels([18, 7, 7], is_in).unwrap();
+    let points: Points = cells.into_iter().map(|p| p.map(f64::from)).collect();
+    let made = lay(&surface, &points, &LayOptions::default(), &Context::default());
+    assert_eq!(made.len(), 1);
+    assert_judged(&surface, &points, &made[0]);
 }
 
 #[test]
