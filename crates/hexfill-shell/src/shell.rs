@@ -28,17 +28,19 @@ use std::sync::Arc;
 /// | restarts, seeds | 64, 4 |
 /// | pillows | 0 and 1 |
 /// | candidates | 3 |
+/// | largest residual | any |
 #[derive(Clone, Debug)]
 pub struct ShellOptions {
     restarts: u64,
     seeds: u64,
     pillows: Vec<u32>,
     candidates: usize,
+    largest_residual: usize,
 }
 
 impl Default for ShellOptions {
     fn default() -> Self {
-        Self { restarts: 64, seeds: 4, pillows: vec![0, 1], candidates: 3 }
+        Self { restarts: 64, seeds: 4, pillows: vec![0, 1], candidates: 3, largest_residual: usize::MAX }
     }
 }
 
@@ -65,6 +67,12 @@ impl ShellOptions {
     #[must_use]
     pub fn with_candidates(self, candidates: usize) -> Self {
         Self { candidates, ..self }
+    }
+
+    /// Most quads of a residual that is filled; where every sweep leaves more there is no mesh, and none is waited for.
+    #[must_use]
+    pub fn with_largest_residual(self, largest_residual: usize) -> Self {
+        Self { largest_residual, ..self }
     }
 
     /// Restarts of the solver by layers.
@@ -403,7 +411,7 @@ impl<'a> Start<'a> {
         }
         // Nothing closed: the smallest residuals are filled.
         // Handles that are left are no matter of flips.
-        fronts.retain(|(_, front)| is_sphere(front));
+        fronts.retain(|(_, front)| is_sphere(front) && front.n_quads() <= options.largest_residual);
         fronts.truncate(RESIDUALS);
         let filled: Vec<Glued> = fronts
             .par_iter()

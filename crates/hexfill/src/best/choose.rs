@@ -31,7 +31,7 @@ use hexfill_embed::quick_star_bound;
 use hexfill_lay::lay;
 use hexfill_mesh::{Context, HexMesh, StopReason, VertexId, hex_isomorphism, surface_symmetry_order};
 use hexfill_search::MAX_QUADS;
-use hexfill_shell::{CutLayers, Layer, SplitOptions, cut_boundary_layers, split_stars};
+use hexfill_shell::{CutLayers, Layer, ShellOptions, SplitOptions, cut_boundary_layers, split_stars};
 
 /// The worst scaled Jacobian from which on a mesh is good enough to compute on.
 pub(crate) const GOOD: f64 = 0.2;
@@ -46,6 +46,9 @@ const MOST_CONSTRUCTED: usize = 1000;
 
 /// Hexes are laid one by one in surfaces of at most so many quads.
 pub(crate) const MOST_LAID: usize = 2500;
+
+/// What a sweep leaves is stirred until it closes up to so many quads; beyond, few such meshes have valid positions, so hexes are laid there first.
+const MOST_STIRRED: usize = 100;
 
 /// Pillows are put into meshes of surfaces of at most so many quads.
 const MOST_PILLOWED: usize = 160;
@@ -202,7 +205,21 @@ impl<'a> Trial<'a> {
         if self.options.effort == Effort::Fast && self.is_enough() && self.options.layers.is_none() {
             return Ok(());
         }
-        let how = FillOptions { shell: self.budget.shell.clone(), ..self.options.clone() };
+        let shell = self.budget.shell.clone();
+        let shell = if self.is_laid_first() { shell.with_largest_residual(MOST_STIRRED) } else { shell };
+        self.shell_by(shell)
+    }
+
+    /// Whether hexes are laid before the large residual of a sweep is stirred.
+    fn is_laid_first(&self) -> bool {
+        let surface = &self.problem.surface;
+        let is_asked = self.options.strategy == Strategy::Auto && self.options.layers.is_none();
+        is_asked && surface.is_sphere() && surface.n_quads() <= MOST_LAID
+    }
+
+    /// Shells the surface with these options.
+    fn shell_by(&mut self, shell: ShellOptions) -> Result<(), FillError> {
+        let how = FillOptions { shell, ..self.options.clone() };
         for filled in shelled(self.problem, &how, &self.early, &mut self.result)? {
             if self.best.is_some()
                 && (self.ctx.stop().is_some() || self.options.effort == Effort::Fast && self.is_enough())
@@ -235,6 +252,9 @@ impl<'a> Trial<'a> {
         let smallest = self.problem.surface.n_quads() <= SMALLEST;
         if why_none.is_none() && !smallest {
             self.lay()?;
+        }
+        if self.best.is_none() && self.is_laid_first() && self.ctx.stop().is_none() {
+            self.shell_by(self.budget.shell.clone())?;
         }
         if self.is_small() && why_none.is_none() {
             if self.class() != Some(1) || self.budget.enough.is_none() {
