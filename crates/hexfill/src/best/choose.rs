@@ -359,8 +359,7 @@ impl<'a> Trial<'a> {
         let prefer = self.options.prefer;
         if self.options.layers.is_some() && filled.route != Route::Shelling {
             // Layers are cut out of a pillow, which shelling puts by itself.
-            let mut pillow = SplitOptions::default();
-            (pillow.below, pillow.layer) = (-1.0, Layer::Always);
+            let pillow = SplitOptions::default().with_below(-1.0).with_layer(Layer::Always);
             let Some(pillowed) = split_stars(&filled.mesh, self.boundary, &pillow, self.ctx) else { return Ok(()) };
             verify(&self.problem.surface, &pillowed.mesh, filled.route)?;
             filled = filled.changed(Maker::Pillows, pillowed.mesh);
@@ -441,10 +440,9 @@ impl<'a> Trial<'a> {
 
     /// The mesh with the stars split that leave (next to) no room; `None` if there are none, or none can be helped.
     fn split(&self, filled: &Filled, bound: f64) -> Result<Option<Filled>, FillError> {
-        let mut options = SplitOptions::default();
         // Pillows are candidates of their own.
-        options.layer = Layer::Never;
-        if bound >= options.below {
+        let options = SplitOptions::default().with_layer(Layer::Never);
+        if bound >= options.below() {
             return Ok(None);
         }
         let Some(split) = split_stars(&filled.mesh, self.boundary, &options, self.ctx) else { return Ok(None) };
