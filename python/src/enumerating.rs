@@ -31,7 +31,7 @@ pub(crate) struct Enumeration {
 /// `InputError`, `NoMeshFound` if it was stopped.
 #[pyfunction]
 pub(crate) fn enumerate(py: Python<'_>, what: Enumeration, how: Run) -> PyResult<(String, Vec<String>)> {
-    let options = LevelOptions { threads: how.n_threads(), narrow_hashes: false };
+    let options = LevelOptions::default().with_threads(how.n_threads());
     let (made, _) = run(py, how, move |ctx| enumerated(&what, &options, ctx))?;
     Ok(made)
 }
@@ -56,7 +56,7 @@ fn enumerated(what: &Enumeration, options: &LevelOptions, ctx: &Context<'_>) -> 
     // As on the command line: canonical augmentation where it is possible, which needs no memory.
     if params.rule == Rule::Strict && params.filter.is_none() {
         let plan = Plan::prepare(&params, options, ctx)?;
-        let (tally, found) = run_whole(&plan, options.threads, wanted, ctx)?;
+        let (tally, found) = run_whole(&plan, options.threads(), wanted, ctx)?;
         levels.push((params.cubes, tally));
         codes = found.selected;
     } else {

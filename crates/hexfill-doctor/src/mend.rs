@@ -9,10 +9,21 @@ use crate::soup::Soup;
 use crate::triangles::merged_triangles;
 
 /// What may be done.
+///
+/// | option | default |
+/// |---|---|
+/// | refine | no |
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MendOptions {
+    refine: bool,
+}
+
+impl MendOptions {
     /// Cut every face of n sides into n quads, through its middle and those of its edges: always an even number.
-    pub refine: bool,
+    #[must_use]
+    pub fn with_refine(self, refine: bool) -> Self {
+        Self { refine }
+    }
 }
 
 /// A mended surface. Points keep their numbers, new ones follow.

@@ -104,7 +104,7 @@ fn levels(c: &mut Criterion) {
         });
         group.throughput(Throughput::Elements(384_653));
         group.bench_function(format!("weill 7, {threads} threads"), |b| {
-            let options = LevelOptions { threads, narrow_hashes: false };
+            let options = LevelOptions::default().with_threads(threads);
             b.iter(|| {
                 all_levels(&Params::new(7, Rule::Weill), &options, Wanted::default(), false, &ctx).expect("not stopped")
                     [6]

@@ -19,17 +19,39 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// How the level engine works; none of it changes a result.
+///
+/// | option | default |
+/// |---|---|
+/// | threads | 1 |
+/// | narrow hashes | no |
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct LevelOptions {
-    /// Number of threads.
-    pub threads: usize,
-    /// 64-bit instead of 128-bit hashes: half the memory, and at n = 8 a chance of about 1e-5 of a wrong count.
-    pub narrow_hashes: bool,
+    pub(crate) threads: usize,
+    pub(crate) narrow_hashes: bool,
 }
 
 impl Default for LevelOptions {
     fn default() -> Self {
         Self { threads: 1, narrow_hashes: false }
+    }
+}
+
+impl LevelOptions {
+    /// Number of threads.
+    #[must_use]
+    pub fn with_threads(self, threads: usize) -> Self {
+        Self { threads, ..self }
+    }
+
+    /// 64-bit instead of 128-bit hashes: half the memory, and at n = 8 a chance of about 1e-5 of a wrong count.
+    #[must_use]
+    pub fn with_narrow_hashes(self, narrow_hashes: bool) -> Self {
+        Self { narrow_hashes, ..self }
+    }
+
+    /// Number of threads.
+    pub fn threads(&self) -> usize {
+        self.threads
     }
 }
 

@@ -97,7 +97,8 @@ impl Params {
         match self.rule {
             Rule::Weill => extend_weill(parent, visit),
             Rule::Strict => {
-                let options = StrictOptions { nonorientable: self.nonorientable, merges: true, fewest_first };
+                let options =
+                    StrictOptions::default().with_nonorientable(self.nonorientable).with_fewest_first(fewest_first);
                 extend_strict(parent, options, visit);
             }
         }

@@ -16,22 +16,45 @@ use crate::complex::{Complex, FREE, MAX_CUBES, MAX_VERTICES, reach, set_of};
 use crate::frames::JOINED;
 
 /// How to extend under rule `strict`.
+///
+/// | option | default |
+/// |---|---|
+/// | non-orientable | no |
+/// | merges | yes |
+/// | fewest first | yes |
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct StrictOptions {
-    /// Whether facets may be glued so that the complex becomes non-orientable.
-    pub nonorientable: bool,
-    /// Whether vertices may be merged. Without, the builder is wrong: it exists so that a test can show that the mass
-    /// formula notices.
-    pub merges: bool,
-    /// Whether to make only the children in which the new cube has the fewest glued facets among the cubes that do not
-    /// disconnect the child. This is the first part of the rule by which a child chooses its parent, so nothing is lost,
-    /// and most trials are never begun.
-    pub fewest_first: bool,
+    nonorientable: bool,
+    merges: bool,
+    fewest_first: bool,
 }
 
 impl Default for StrictOptions {
     fn default() -> Self {
         Self { nonorientable: false, merges: true, fewest_first: true }
+    }
+}
+
+impl StrictOptions {
+    /// Whether facets may be glued so that the complex becomes non-orientable.
+    #[must_use]
+    pub fn with_nonorientable(self, nonorientable: bool) -> Self {
+        Self { nonorientable, ..self }
+    }
+
+    /// Whether vertices may be merged. Without, the builder is wrong: it exists so that a test can show that the mass
+    /// formula notices.
+    #[must_use]
+    pub fn with_merges(self, merges: bool) -> Self {
+        Self { merges, ..self }
+    }
+
+    /// Whether to make only the children in which the new cube has the fewest glued facets among the cubes that do not
+    /// disconnect the child. This is the first part of the rule by which a child chooses its parent, so nothing is lost,
+    /// and most trials are never begun.
+    #[must_use]
+    pub fn with_fewest_first(self, fewest_first: bool) -> Self {
+        Self { fewest_first, ..self }
     }
 }
 

@@ -15,7 +15,7 @@ fn top() -> usize {
 }
 
 fn levels(params: &Params, threads: usize) -> Vec<Tally> {
-    let options = LevelOptions { threads, narrow_hashes: false };
+    let options = LevelOptions::default().with_threads(threads);
     let levels = all_levels(params, &options, Wanted::default(), false, &Context::default()).unwrap();
     levels.into_iter().map(|l| l.tally).collect()
 }
@@ -94,7 +94,7 @@ fn both_engines_agree_and_the_mass_formula_balances() {
 #[test]
 fn a_builder_without_merges_fails_the_mass_formula() {
     let found = |merges: bool| {
-        let options = StrictOptions { merges, fewest_first: false, ..StrictOptions::default() };
+        let options = StrictOptions::default().with_merges(merges).with_fewest_first(false);
         let mut level = vec![canonical(&Complex::cube()).code];
         let mut rows = Vec::new();
         for _ in 2..=6 {
@@ -250,7 +250,7 @@ mod brute {
 #[test]
 fn brute_force_agrees_on_small_levels() {
     // Without merging, rule strict, from every class of up to 2 (slow: 3) cubes: the fast extension finds the same children.
-    let options = StrictOptions { merges: false, fewest_first: false, ..StrictOptions::default() };
+    let options = StrictOptions::default().with_merges(false).with_fewest_first(false);
     let mut level = vec![Complex::cube()];
     for n in 1..=top() - 4 {
         let mut next = BTreeMap::new();
@@ -268,7 +268,7 @@ fn brute_force_agrees_on_small_levels() {
     }
     // With merging, every child is strict in the words of the definition.
     for parent in &level {
-        extend_strict(parent, StrictOptions { fewest_first: false, ..StrictOptions::default() }, |child, _| {
+        extend_strict(parent, StrictOptions::default().with_fewest_first(false), |child, _| {
             assert!(brute::is_strict(child.cubes()));
         });
     }
@@ -329,7 +329,14 @@ fn settings_do_not_change_results() {
     let everything = Selection::default();
     let wanted = Wanted { selection: Some(&everything), list: true, targets: &[] };
     let run = |threads, narrow_hashes| {
-        let levels = all_levels(&params, &LevelOptions { threads, narrow_hashes }, wanted, false, &ctx).unwrap();
+        let levels = all_levels(
+            &params,
+            &LevelOptions::default().with_threads(threads).with_narrow_hashes(narrow_hashes),
+            wanted,
+            false,
+            &ctx,
+        )
+        .unwrap();
         levels.into_iter().map(|l| (l.tally, l.found)).collect::<Vec<_>>()
     };
     let one = run(1, false);

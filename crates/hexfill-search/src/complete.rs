@@ -38,16 +38,18 @@ const EFFORTS: [Breadth; 6] = [
 const FIRST_BALLS: u64 = 2_000;
 
 /// What to complete.
+///
+/// | option | default |
+/// |---|---|
+/// | quads, hexes of a class at most | 20, 56 |
+/// | efforts | all |
+/// | rounds | 3 |
 #[derive(Clone, Copy, Debug)]
 pub struct CompleteOptions {
-    /// Every class of at most this many quads is to have a filling. Their list is practical to 20.
-    pub max_quads: usize,
-    /// A filling with more hexes than this is looked at again with each effort.
-    pub max_hexes: u32,
-    /// How many efforts to make, each wider than the one before.
-    pub efforts: usize,
-    /// How many rounds of exchanging balls to make, each with four times as many as the one before.
-    pub rounds: usize,
+    max_quads: usize,
+    max_hexes: u32,
+    efforts: usize,
+    rounds: usize,
 }
 
 impl Default for CompleteOptions {
@@ -56,10 +58,46 @@ impl Default for CompleteOptions {
     }
 }
 
+impl CompleteOptions {
+    /// Every class of at most this many quads is to have a filling. Their list is practical to 20.
+    #[must_use]
+    pub fn with_max_quads(self, max_quads: usize) -> Self {
+        Self { max_quads, ..self }
+    }
+
+    /// A filling with more hexes than this is looked at again with each effort.
+    #[must_use]
+    pub fn with_max_hexes(self, max_hexes: u32) -> Self {
+        Self { max_hexes, ..self }
+    }
+
+    /// How many efforts to make, each wider than the one before.
+    #[must_use]
+    pub fn with_efforts(self, efforts: usize) -> Self {
+        Self { efforts, ..self }
+    }
+
+    /// How many rounds of exchanging balls to make, each with four times as many as the one before.
+    #[must_use]
+    pub fn with_rounds(self, rounds: usize) -> Self {
+        Self { rounds, ..self }
+    }
+
+    /// Every class of at most this many quads is to have a filling.
+    pub fn max_quads(&self) -> usize {
+        self.max_quads
+    }
+
+    /// A filling with more hexes than this is looked at again.
+    pub fn max_hexes(&self) -> u32 {
+        self.max_hexes
+    }
+}
+
 /// What a completion brought.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CompleteReport {
-    /// Classes of at most [`CompleteOptions::max_quads`] quads.
+    /// Classes of at most [`CompleteOptions::with_max_quads`] quads.
     pub targets: usize,
     /// How many of them the growth had reached.
     pub grown: usize,

@@ -82,17 +82,44 @@ fn is_subset(a: &PackedPairs, b: &PackedPairs) -> bool {
 }
 
 /// How far and how densely to grow.
+///
+/// | option | default |
+/// |---|---|
+/// | cap | 24 quads |
+/// | width | 1 state a class |
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GrowOptions {
-    /// Most quads a ball's boundary may have on the way (at most [`MAX_CAP`]).
-    pub cap: usize,
-    /// How many states to keep per class; `u32::MAX` keeps every Pareto state.
-    pub width: u32,
+    pub(crate) cap: usize,
+    pub(crate) width: u32,
 }
 
 impl Default for GrowOptions {
     fn default() -> Self {
         Self { cap: 24, width: 1 }
+    }
+}
+
+impl GrowOptions {
+    /// Most quads a ball's boundary may have on the way (at most [`MAX_CAP`]).
+    #[must_use]
+    pub fn with_cap(self, cap: usize) -> Self {
+        Self { cap, ..self }
+    }
+
+    /// How many states to keep per class; `u32::MAX` keeps every Pareto state.
+    #[must_use]
+    pub fn with_width(self, width: u32) -> Self {
+        Self { width, ..self }
+    }
+
+    /// Most quads a ball's boundary may have on the way.
+    pub fn cap(&self) -> usize {
+        self.cap
+    }
+
+    /// How many states are kept per class.
+    pub fn width(&self) -> u32 {
+        self.width
     }
 }
 
@@ -345,7 +372,7 @@ impl Growth {
     /// use hexfill_mesh::Context;
     /// use hexfill_search::{GrowOptions, Growth};
     ///
-    /// let mut growth = Growth::new(GrowOptions { cap: 20, width: 1 });
+    /// let mut growth = Growth::new(GrowOptions::default().with_cap(20));
     /// assert_eq!(growth.n_classes(), 1);
     /// growth.grow(&Context::default());
     /// assert_eq!((growth.level(), growth.n_classes()), (2, 2));

@@ -38,20 +38,47 @@ pub enum Layer {
 }
 
 /// When to split.
+///
+/// | option | default |
+/// |---|---|
+/// | below | a scaled Jacobian of 0.1 |
+/// | gain | 0.05 |
+/// | layer | [`Layer::IfInvalid`] |
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct SplitOptions {
-    /// Vertices whose star can reach less than this scaled Jacobian are split, if that helps.
-    pub below: f64,
-    /// A split must raise its vertex by this much at least; a fifth of it will do where no placement is valid.
-    pub gain: f64,
-    /// Whether a layer of hexes goes under the whole surface.
-    pub layer: Layer,
+    below: f64,
+    gain: f64,
+    layer: Layer,
 }
 
 impl Default for SplitOptions {
     fn default() -> Self {
         Self { below: 0.1, gain: 0.05, layer: Layer::default() }
+    }
+}
+
+impl SplitOptions {
+    /// Vertices whose star can reach less than this scaled Jacobian are split, if that helps.
+    #[must_use]
+    pub fn with_below(self, below: f64) -> Self {
+        Self { below, ..self }
+    }
+
+    /// A split must raise its vertex by this much at least; a fifth of it will do where no placement is valid.
+    #[must_use]
+    pub fn with_gain(self, gain: f64) -> Self {
+        Self { gain, ..self }
+    }
+
+    /// Whether a layer of hexes goes under the whole surface.
+    #[must_use]
+    pub fn with_layer(self, layer: Layer) -> Self {
+        Self { layer, ..self }
+    }
+
+    /// Vertices whose star can reach less than this scaled Jacobian are split.
+    pub fn below(&self) -> f64 {
+        self.below
     }
 }
 

@@ -2,8 +2,6 @@
 //!
 //! Source: ours.
 
-use std::fmt;
-
 /// Which step of the shelling hexes come from, in the order of the steps.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub enum Stage {
@@ -21,18 +19,4 @@ pub enum Stage {
     Flips,
     /// Fills what the sweep left.
     Residual,
-}
-
-impl fmt::Display for Stage {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Grid => "grid",
-            Self::Columns => "columns",
-            Self::Pillows => "pillows",
-            Self::Plugs => "plugs",
-            Self::Layers => "layers",
-            Self::Flips => "flips",
-            Self::Residual => "residual",
-        })
-    }
 }

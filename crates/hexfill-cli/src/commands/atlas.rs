@@ -120,21 +120,28 @@ pub(crate) fn run(args: &AtlasArgs, console: &Console, ctx: &Context<'_>) -> any
     match &args.command {
         AtlasCommand::Build { output, cap, levels, width, beam } => {
             let width = if *width == 0 { u32::MAX } else { *width };
-            build(output, GrowOptions { cap: *cap as usize, width }, *beam, *levels, console, ctx)
+            build(
+                output,
+                GrowOptions::default().with_cap(*cap as usize).with_width(width),
+                *beam,
+                *levels,
+                console,
+                ctx,
+            )
         }
         AtlasCommand::Complete { file, output, cap, levels, beam, max_quads, max_hexes, efforts, rounds, keep } => {
             files::check_folder(output)?;
             files::check_distinct(&[&file.to_string_lossy(), output])?;
-            let grown = build(file, GrowOptions { cap: *cap as usize, width: 1 }, Some(*beam), *levels, console, ctx)?;
+            let grown =
+                build(file, GrowOptions::default().with_cap(*cap as usize), Some(*beam), *levels, console, ctx)?;
             if grown != Exit::Done {
                 return Ok(grown);
             }
-            let options = CompleteOptions {
-                max_quads: *max_quads as usize,
-                max_hexes: *max_hexes,
-                efforts: *efforts,
-                rounds: *rounds,
-            };
+            let options = CompleteOptions::default()
+                .with_max_quads(*max_quads as usize)
+                .with_max_hexes(*max_hexes)
+                .with_efforts(*efforts)
+                .with_rounds(*rounds);
             complete_atlas(file, output, keep.as_deref(), &options, console, ctx)
         }
         AtlasCommand::Stats { file } => {
@@ -221,9 +228,9 @@ fn complete_atlas(
             "{output}: {} of {} spheres of at most {} quads filled, {} of them with more than {} hexes",
             report.classes - report.missing,
             report.classes,
-            options.max_quads,
+            options.max_quads(),
             report.large,
-            options.max_hexes
+            options.max_hexes()
         ))?;
         console.print(format!(
             "{} grown, {} new or smaller in the atlas to keep, {} new by searching backward",

@@ -121,8 +121,8 @@ fn write_best_mesh(entry: &Entry, path: &str, console: &Console, ctx: &Context<'
     files::check_mesh_output(path, None, &surface)?;
     let placed = hexfill::embed_mesh(&data.hex_mesh()?, &boundary, None, &EmbedOptions::default(), ctx)?;
     console.say(placed.report().to_string());
-    placed.flag(&mut data);
     (data.points, data.has_coordinates) = (placed.points().to_vec(), true);
+    placed.flag(&mut data);
     files::write_data(path, None, &data, console)?;
     let stop = placed.embedding().map_or(StopReason::Finished, |report| report.stop);
     Ok(Exit::of_stop(stop, if placed.is_certified() { Exit::Done } else { Exit::No }))

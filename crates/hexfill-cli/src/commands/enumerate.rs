@@ -226,8 +226,12 @@ fn enumerate(args: &EnumerateArgs, threads: usize, console: &Console, ctx: &Cont
     let mut output = Output::open(args.output.as_ref(), listed, args.format, params.rule, args.mirror)?;
     output.gallery = args.gallery.is_some().then(Gallery::default);
     let wanted = Wanted { selection: Some(&selection), list, targets: &targets };
-    let job =
-        Job { params: &params, options: LevelOptions { threads, narrow_hashes: args.narrow_hashes }, wanted, ctx };
+    let job = Job {
+        params: &params,
+        options: LevelOptions::default().with_threads(threads).with_narrow_hashes(args.narrow_hashes),
+        wanted,
+        ctx,
+    };
     let mut counts = Counts::default();
     if engine == Engine::Level {
         job.by_levels(&mut output, &mut counts)?;
@@ -320,7 +324,7 @@ impl Job<'_> {
         let plan = Plan::prepare(self.params, &self.options, self.ctx)?;
         let mut tally = Tally::default();
         let all = chunks_of_part(part, chunks)?;
-        run_in_order(&plan, &all, self.options.threads, self.wanted, self.ctx, &mut |result| {
+        run_in_order(&plan, &all, self.options.threads(), self.wanted, self.ctx, &mut |result| {
             tally.merge(&result.tally);
             for code in &result.found.selected {
                 output.write(code)?;
@@ -345,7 +349,7 @@ impl Job<'_> {
         let plan = Plan::prepare(self.params, &self.options, self.ctx)?;
         let names = self.wanted.targets.iter().map(|t| t.name.clone()).collect();
         let header = Header::new(self.params, selection.text(), self.wanted.list, names, chunks);
-        let done = run_checkpointed(&plan, folder, part, &header, self.options.threads, self.wanted, self.ctx)?;
+        let done = run_checkpointed(&plan, folder, part, &header, self.options.threads(), self.wanted, self.ctx)?;
         if done.dropped_bytes > 0 {
             console.note(format!("a torn last line of {} bytes was dropped from the ledger", done.dropped_bytes));
         }
@@ -460,7 +464,7 @@ fn verify(folder: &Path, redo: usize, threads: usize, console: &Console, ctx: &C
     let mut findings = merged.inconsistencies();
     let missing = merged.missing().count();
     if redo > 0 && !merged.records.is_empty() {
-        let plan = Plan::prepare(&merged.header.params, &LevelOptions { threads, narrow_hashes: false }, ctx)?;
+        let plan = Plan::prepare(&merged.header.params, &LevelOptions::default().with_threads(threads), ctx)?;
         let step = merged.records.len().div_ceil(redo);
         for (&index, record) in merged.records.iter().step_by(step) {
             let chunk = Chunk { index, of: merged.header.chunks };

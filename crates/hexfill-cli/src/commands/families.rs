@@ -1,6 +1,7 @@
 //! The rows of `hexfill records` that are about many surfaces, or about a mesh with a further property: what the program itself holds says the numbers.
 
 use anyhow::Context as _;
+use hexfill::catalog::VERHETSEL_2019;
 use hexfill::unstable::check::{Ball, Judged, Level, Options, judge};
 use hexfill::unstable::construct::{Cell, CellLibrary};
 use hexfill::unstable::search::Atlas;
@@ -14,7 +15,6 @@ const TETS_A_QUAD: usize = 2;
 const HEXES_A_TET: usize = 4;
 /// The number of 3-connected spheres of 6 to 20 quads (Brinkmann et al. 2005).
 const SPHERES_TO_20: usize = 54_943;
-const VERHETSEL_2019: &str = "Verhetsel, Pellerin, Remacle 2019";
 
 /// A row.
 #[derive(Serialize)]
@@ -81,8 +81,13 @@ fn stands(cell: &Cell, ctx: &Context<'_>) -> bool {
     let quads: Vec<[u32; 4]> = cell.pattern.boundary().into_iter().map(|quad| quad.map(id)).collect();
     let hexes: Vec<[u32; 8]> = cell.hexes.iter().map(|hex| hex.map(u32::from)).collect();
     let judged = Judged::connectivity(cell.points.len(), &hexes).with_surface(&quads);
-    let report = judge(&judged, &Options::default().with_up_to(Level::L3), ctx);
-    report.passed(Level::L3) && report.facts.ball == Some(Ball::Yes) && cell.unsafe_pairs().is_empty()
+    is_exact_ball(&judged, ctx) && cell.unsafe_pairs().is_empty()
+}
+
+/// Whether the judge finds a proper ball with exactly the surface it is given.
+pub(super) fn is_exact_ball(judged: &Judged<'_>, ctx: &Context<'_>) -> bool {
+    let report = judge(judged, &Options::default().with_up_to(Level::L3), ctx);
+    report.passed(Level::L3) && report.facts.ball == Some(Ball::Yes)
 }
 
 /// A row in words.

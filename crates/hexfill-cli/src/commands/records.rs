@@ -1,11 +1,10 @@
 //! `hexfill records`: what is known of the problems whose best mesh the catalogue holds and of whole families of surfaces, and what was proved.
 
-use super::families::{self, families, verdict};
+use super::families::{self, families, is_exact_ball, verdict};
 use crate::console::Console;
 use crate::exit::Exit;
 use hexfill::catalog::{self, Entry, Record};
 use hexfill::io::MeshData;
-use hexfill::unstable::check::{Ball, Level, Options, judge};
 use hexfill::{Context, Problem};
 use serde::Serialize;
 use serde_json::json;
@@ -82,10 +81,7 @@ fn row(entry: &Entry, mesh: &MeshData, verify: bool, ctx: &Context<'_>) -> anyho
 
 /// Whether the judge finds the stored mesh to be a ball that fills the problem's surface.
 fn stands(mesh: &MeshData, problem: &Problem, ctx: &Context<'_>) -> bool {
-    hexfill::with_judged(mesh, Some(problem), |judged| {
-        let report = judge(judged, &Options::default().with_up_to(Level::L3), ctx);
-        report.passed(Level::L3) && report.facts.ball == Some(Ball::Yes)
-    })
+    hexfill::with_judged(mesh, Some(problem), |judged| is_exact_ball(judged, ctx))
 }
 
 fn line(row: &Row) -> String {

@@ -238,7 +238,8 @@ fn atlas() -> Result<Atlas, String> {
     if let Some(path) = std::env::var_os("ATLAS") {
         return Atlas::read_path(path.as_ref()).map_err(|e| e.to_string());
     }
-    let mut growth = Growth::new(GrowOptions { cap: ATLAS_CAP, width: setting("GROWTH_WIDTH", 3) as u32 });
+    let mut growth =
+        Growth::new(GrowOptions::default().with_cap(ATLAS_CAP).with_width(setting("GROWTH_WIDTH", 3) as u32));
     while (growth.level() as usize) < setting("LEVELS", 30) && !growth.is_exhausted() {
         growth.grow(&Context::default());
     }

@@ -19,6 +19,6 @@ pub enum Undecided {
     #[error(transparent)]
     Interior(#[from] MissingInterior),
     /// Told to stop before the answer.
-    #[error("stopped: {0:?}")]
+    #[error("stopped: {0}")]
     Stopped(StopReason),
 }

@@ -30,52 +30,50 @@ const WORTH: f64 = 1.05;
 pub(crate) fn inflate(problem: &Problem, points: &mut Vec<Vector>, floor: f64, context: &Context<'_>) -> bool {
     let incidence = Incidence::new(problem);
     let before = worst_value(problem, points);
+    let tiny = TINY * mean_fixed_edge(problem, points);
+    let (mut cell, mut size) = smallest(problem, points);
     let mut grew = false;
     for _ in 0..STRETCHES {
-        let Some((cell, size)) = smallest(problem, points) else { break };
+        if size >= tiny || context.stop().is_some() {
+            break;
+        }
         let stretched = GAMMAS
             .iter()
             .map(|&gamma| stretch(problem, points, cell, gamma))
             .find(|trial| bad_cells(problem, trial).is_empty() && worst_value(problem, trial) >= LEFT * before);
-        let Some(mut trial) = stretched.filter(|_| context.stop().is_none()) else { break };
+        let Some(mut trial) = stretched else { break };
         let floors = EdgeFloors::new(problem, &trial);
         let mut left = visits(problem.hexes.len());
         lift_poor_cells(problem, &incidence, &mut trial, &floors, before, &mut left, context);
         if worst_value(problem, &trial) < floor || !bad_cells(problem, &trial).is_empty() {
             break;
         }
-        let after = (0..problem.hexes.len()).map(|h| length(problem, &trial, h)).fold(f64::INFINITY, f64::min);
-        if after < WORTH * size {
+        let (next, grown) = smallest(problem, &trial);
+        if grown < WORTH * size {
             break;
         }
         *points = trial;
+        (cell, size) = (next, grown);
         grew = true;
     }
     grew
 }
 
-/// The edge of the cube that has a cell's volume.
-fn length(problem: &Problem, points: &[Vector], hex: usize) -> f64 {
-    (Frame::new(&problem.corners_of(hex, points)).bernstein().iter().sum::<f64>() / 27.0).cbrt()
+/// The smallest cell and its size: the edge of the cube that has its volume.
+fn smallest(problem: &Problem, points: &[Vector]) -> (usize, f64) {
+    let size = |h| (Frame::new(&problem.corners_of(h, points)).bernstein().iter().sum::<f64>() / 27.0).cbrt();
+    (0..problem.hexes.len())
+        .map(|h| (h, size(h)))
+        .fold((0, f64::INFINITY), |least, next| if next.1 < least.1 { next } else { least })
 }
 
-/// The smallest cell and its size, if it is tiny.
-fn smallest(problem: &Problem, points: &[Vector]) -> Option<(usize, f64)> {
-    let (mut sum, mut count) = (0.0, 0usize);
-    let mut least = (0, f64::INFINITY);
-    for (h, hex) in problem.hexes.iter().enumerate() {
-        for [a, b] in FRAME_EDGES.map(|e| e.map(|c| hex[c] as usize)) {
-            if problem.slot[a] == FIXED && problem.slot[b] == FIXED {
-                sum += norm(sub(points[a], points[b]));
-                count += 1;
-            }
-        }
-        let size = length(problem, points, h);
-        if size < least.1 {
-            least = (h, size);
-        }
-    }
-    (least.1 < TINY * sum / count as f64).then_some(least)
+/// The mean length of the edges whose ends are both fixed, each taken as often as there are cells round it; zero if there is none.
+fn mean_fixed_edge(problem: &Problem, points: &[Vector]) -> f64 {
+    let edges = problem.hexes.iter().flat_map(|hex| FRAME_EDGES.map(|edge| edge.map(|c| hex[c] as usize)));
+    let fixed = edges.filter(|edge| edge.iter().all(|&v| problem.slot[v] == FIXED));
+    let (sum, count) =
+        fixed.fold((0.0, 0u32), |(sum, count), [a, b]| (sum + norm(sub(points[a], points[b])), count + 1));
+    sum / f64::from(count.max(1))
 }
 
 /// The points with space stretched round a cell.
@@ -117,12 +115,12 @@ mod tests {
             })
             .collect();
         let before = worst_value(&problem, &points);
-        let small = smallest(&problem, &points).expect("a tiny cell").1;
+        let small = smallest(&problem, &points).1;
         assert!(before > 0.1 && bad_cells(&problem, &points).is_empty(), "{before}");
         let fixed = points.clone();
         assert!(inflate(&problem, &mut points, 0.9 * before, &Context::default()));
         assert!(worst_value(&problem, &points) >= 0.9 * before && bad_cells(&problem, &points).is_empty());
-        let large = (0..problem.hexes.len()).map(|h| length(&problem, &points, h)).fold(f64::INFINITY, f64::min);
+        let large = smallest(&problem, &points).1;
         assert!(large > 3.0 * small, "{small} {large}");
         assert!((0..points.len()).filter(|&v| problem.slot[v] == FIXED).all(|v| points[v] == fixed[v]));
         // Nothing is tiny in a grid.

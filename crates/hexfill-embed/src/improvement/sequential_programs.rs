@@ -13,7 +13,7 @@ use super::goal::Goal;
 use super::program_rows::{Place, linearise};
 use super::program_step::{Model, solve};
 use crate::problem::Problem;
-use crate::quality::{COARSE, Cells, FINE, Precision, judge, judge_near_worst, judge_within, worst_log_condition};
+use crate::quality::{Cells, Precision, judge, judge_near_worst, judge_within, worst_log_condition};
 use hexfill_geometry::Vector;
 use hexfill_mesh::{Context, StopReason};
 
@@ -114,7 +114,18 @@ impl<'p> Climber<'p> {
         };
         let value = merit(problem, points, &cells, goal);
         let (radius, multipliers) = (0.5, Vec::new());
-        Self { problem, goal, limits, cells, value, radius, curved: false, multipliers, rejected: 0, precision: COARSE }
+        Self {
+            problem,
+            goal,
+            limits,
+            cells,
+            value,
+            radius,
+            curved: false,
+            multipliers,
+            rejected: 0,
+            precision: Precision::Coarse,
+        }
     }
 
     fn has_reached_target(&self) -> bool {
@@ -127,11 +138,11 @@ impl<'p> Climber<'p> {
 
     /// Judges closely from now on, as the error on the way may be larger than what is left; false if that is done.
     fn look_closely(&mut self, points: &[Vector]) -> bool {
-        if self.precision == FINE || !matches!(self.goal, Goal::ScaledJacobian { .. }) {
+        if self.precision == Precision::Fine || !matches!(self.goal, Goal::ScaledJacobian { .. }) {
             return false;
         }
-        self.precision = FINE;
-        self.cells = judge_within(self.problem, points, self.value + SEEN, FINE);
+        self.precision = Precision::Fine;
+        self.cells = judge_within(self.problem, points, self.value + SEEN, Precision::Fine);
         self.value = self.cells.worst;
         true
     }

@@ -7,6 +7,6 @@ mod worst_cells;
 
 pub(crate) use verdict::Verdict;
 pub(crate) use worst_cells::{
-    COARSE, Cells, FINE, Precision, WORKING_BOXES, WorstOfCell, bad_cells, corner_points, judge, judge_near_worst,
-    judge_within, log_condition_of, worst_log_condition, worst_value,
+    Cells, Precision, WORKING_BOXES, WorstOfCell, bad_cells, corner_points, judge, judge_near_worst, judge_within,
+    log_condition_of, worst_log_condition, worst_value,
 };

@@ -13,19 +13,27 @@ use hexfill_mesh::cube::POSITIONS;
 /// Boxes a cell may be cut into when its sign is judged while working.
 pub(crate) const WORKING_BOXES: usize = 200;
 
+/// Boxes a cell may be cut into when its worst value is wanted: fewer leave elongated cells with a value that is too good.
+const VALUE_BOXES: usize = 2000;
+
 /// How closely cells are judged.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Precision {
-    /// The largest error of a worst value.
-    error: f64,
-    /// The boxes a cell may take.
-    boxes: usize,
+pub(crate) enum Precision {
+    /// On the way,
+    Coarse,
+    /// and once the target seems to be reached.
+    Fine,
 }
 
-/// On the way,
-pub(crate) const COARSE: Precision = Precision { error: 1e-6, boxes: 2000 };
-/// and once the target seems to be reached.
-pub(crate) const FINE: Precision = Precision { error: 1e-10, boxes: 2000 };
+impl Precision {
+    /// The largest error of a worst value.
+    fn error(self) -> f64 {
+        match self {
+            Self::Coarse => 1e-6,
+            Self::Fine => 1e-10,
+        }
+    }
+}
 
 /// What is known of the cells at some coordinates.
 pub(crate) struct Cells {
@@ -46,15 +54,14 @@ pub(crate) struct WorstOfCell {
 
 /// Judges all cells at `points`; cells better than `cutoff` only as far as to know that.
 pub(crate) fn judge(problem: &Problem, points: &[Vector], cutoff: f64) -> Cells {
-    judge_within(problem, points, cutoff, COARSE)
+    judge_within(problem, points, cutoff, Precision::Coarse)
 }
 
 /// As [`judge`], as closely as is said.
 pub(crate) fn judge_within(problem: &Problem, points: &[Vector], cutoff: f64, precision: Precision) -> Cells {
     let mut each = vec![WorstOfCell::default(); problem.hexes.len()];
     problem.map_hexes(&mut each, |h| {
-        let Precision { error, boxes } = precision;
-        let worst = Frame::new(&problem.corners_of(h, points)).worst(cutoff, error, boxes);
+        let worst = Frame::new(&problem.corners_of(h, points)).worst(cutoff, precision.error(), VALUE_BOXES);
         let value = if worst.lower > 0.0 { worst.upper } else { worst.upper.min(-1e-12) };
         WorstOfCell { value, inner: worst.inner }
     });

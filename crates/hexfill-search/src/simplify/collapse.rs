@@ -6,7 +6,7 @@ use crate::simplify::column_collapse::collapse_columns;
 use crate::simplify::live::LiveMesh;
 use crate::simplify::quotient::Kept;
 use crate::simplify::sheet_collapse::{closed_sheets, collapse_sheets, sheet_quotient};
-use crate::simplify::{Simplified, SimplifyReport, Snapshot};
+use crate::simplify::{Settled, Simplified, SimplifyReport, Snapshot};
 use hexfill_mesh::{Context, HexId, HexMesh, VertexId};
 
 /// Which sheets and columns may be collapsed.
@@ -35,7 +35,7 @@ pub fn collapse(mesh: &HexMesh, which: Collapse, ctx: &Context<'_>) -> Simplifie
     if report.collapsed == 0 {
         return Simplified { report, ..Simplified::unchanged(mesh) };
     }
-    let (mesh, origin, _) = Snapshot::of(&live).settled(mesh);
+    let Settled { mesh, origin, .. } = Snapshot::of(&live).settled(mesh);
     Simplified { mesh, origin, report }
 }
 
@@ -69,7 +69,7 @@ pub fn single_sheet_collapses(mesh: &HexMesh, which: Collapse) -> Vec<WithoutShe
         live.merge(&quotient.removed, &quotient.facets, &merges);
         // A hex keeps its number until the mesh is settled.
         let hexes = live.alive().map(HexId).collect();
-        let (mesh, origin, _) = Snapshot::of(&live).settled(mesh);
+        let Settled { mesh, origin, .. } = Snapshot::of(&live).settled(mesh);
         // Collapsing merges vertices and makes none.
         let origin = origin.into_iter().collect::<Option<Vec<VertexId>>>()?;
         Some(WithoutSheet { mesh, origin, hexes })

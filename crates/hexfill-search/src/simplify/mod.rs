@@ -291,7 +291,7 @@ fn exchange_balls(
         let ids = (0..mesh.n_vertices() as u32).collect();
         return (Simplified { report, ..Simplified::unchanged(mesh) }, ids);
     }
-    let (mesh, origin, ids) = best.settled(mesh);
+    let Settled { mesh, origin, ids } = best.settled(mesh);
     report.after = mesh.n_hexes();
     (Simplified { mesh, origin, report }, ids)
 }
@@ -329,9 +329,8 @@ impl Snapshot {
         }
     }
 
-    /// As a mesh with vertices numbered anew: the old ones in their order, then the new ones in theirs. Per vertex also the one of the input and the id it
-    /// had until now.
-    fn settled(&self, input: &HexMesh) -> (HexMesh, Vec<Option<VertexId>>, Vec<u32>) {
+    /// As a mesh with vertices numbered anew: the old ones in their order, then the new ones in theirs.
+    fn settled(&self, input: &HexMesh) -> Settled {
         let used_before = input.used_vertices();
         let mut used = vec![false; self.is_new.len()];
         for &v in self.hexes.iter().flatten() {
@@ -357,8 +356,17 @@ impl Snapshot {
         }
         let hexes: Vec<[u32; 8]> = self.hexes.iter().map(|h| h.map(|v| number[v as usize])).collect();
         let mesh = HexMesh::try_new(origin.len(), &hexes).expect("facets stay glued in pairs");
-        (mesh, origin, ids)
+        Settled { mesh, origin, ids }
     }
+}
+
+/// A mesh taken out of a live one.
+struct Settled {
+    mesh: HexMesh,
+    /// Per vertex: the vertex of the input it was, or `None` for a new one.
+    origin: Vec<Option<VertexId>>,
+    /// Per vertex: its id in the live mesh.
+    ids: Vec<u32>,
 }
 
 /// How far the work is.

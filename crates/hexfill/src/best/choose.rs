@@ -1,16 +1,17 @@
 //! The automatic strategy where coordinates count: candidates of several engines, embedded, and the best of them.
 //!
 //! Engines in this order, the next only if none before brought a good mesh: atlas and shelling, inward flips, construction.
-//! The order of meshes: certified ones first, then those whose worst scaled Jacobian is at least [`GOOD`], then fewest
-//! hexes for their quality ([`Prefer`]).
+//! The order of meshes is [`rank()`]'s.
 //!
 //! Source: ours; measured in `record/embed-2026-11-21.md` and `record/shelling-2026-11-22.md`.
 
 use crate::best::budget::Budget;
 use crate::best::choice::{Candidate, Choice, Outcome};
 use crate::best::hopeless::{Hopeless, hopeless};
+use crate::best::leader::Leader;
 use crate::best::no_room::no_room;
 use crate::best::pillows::with_pillows;
+use crate::best::rank::{GOOD, rank, within};
 use crate::best::{PlaceOptions, PlacedFill};
 use crate::fill::attempt::Attempt;
 use crate::fill::construct::construct;
@@ -19,7 +20,7 @@ use crate::fill::filled::{FillResult, Filled, Route};
 use crate::fill::judged::verify;
 use crate::fill::last_resort::{LastResort, leaving_time};
 use crate::fill::maker::Maker;
-use crate::fill::options::{Effort, FillOptions, Prefer, Strategy};
+use crate::fill::options::{Effort, FillOptions, Strategy};
 use crate::fill::search::{search, smallest_on_record};
 use crate::fill::shelled::shelled;
 use crate::fill::stored::stored_mesh;
@@ -32,9 +33,6 @@ use hexfill_lay::lay;
 use hexfill_mesh::{Context, HexMesh, StopReason, VertexId, hex_isomorphism, surface_symmetry_order};
 use hexfill_search::MAX_QUADS;
 use hexfill_shell::{CutLayers, Layer, ShellOptions, SplitOptions, cut_boundary_layers, split_stars};
-
-/// The worst scaled Jacobian from which on a mesh is good enough to compute on.
-pub(crate) const GOOD: f64 = 0.2;
 
 /// Surfaces of at most so many quads have many fillings in the atlas.
 const SMALLEST: usize = 24;
@@ -52,30 +50,6 @@ const MOST_STIRRED: usize = 100;
 
 /// Pillows are put into meshes of surfaces of at most so many quads.
 const MOST_PILLOWED: usize = 160;
-
-/// The share of the worst scaled Jacobian that is kept while tiny cells grow.
-const EVEN: f64 = 0.9;
-
-/// The place of a mesh in the order; smaller is better.
-type Rank = (u8, f64);
-
-fn rank(filled: &Filled, placed: &Placed, prefer: Prefer) -> Rank {
-    let invalid = placed.cells.iter().filter(|c| !c.valid).count();
-    if placed.cells.is_empty() || invalid > 0 {
-        return (2, if placed.cells.is_empty() { f64::MAX } else { invalid as f64 });
-    }
-    let worst = placed.worst();
-    (u8::from(worst < GOOD), within(filled.mesh.n_hexes(), worst, prefer))
-}
-
-/// The order among good meshes.
-fn within(hexes: usize, worst: f64, prefer: Prefer) -> f64 {
-    match prefer {
-        Prefer::Balance => hexes as f64 / worst.powi(3),
-        Prefer::Hexes => hexes as f64,
-        Prefer::Quality => -worst,
-    }
-}
 
 /// One mesh for the problem with coordinates, by the order above.
 ///
@@ -103,7 +77,6 @@ pub(crate) fn fill_best(
         budget,
         result,
         best: None,
-        is_polished: false,
         seen: Vec::new(),
         tangled: None,
         hopeless: None,
@@ -131,9 +104,7 @@ struct Trial<'a> {
     budget: Budget,
     /// What the engines say; their meshes stay here until they are considered.
     result: FillResult,
-    best: Option<(Rank, Filled, Placed)>,
-    /// Whether the best was raised as far as it is worth.
-    is_polished: bool,
+    best: Option<Leader>,
     /// The meshes considered.
     seen: Vec<Candidate>,
     /// The shelled mesh nearest to valid positions, while none has any: bad corners first, then hexes.
@@ -183,11 +154,11 @@ impl<'a> Trial<'a> {
         // On a surface with symmetries the mesh may lie another way, which has another bound.
         let has_one_way = surface_symmetry_order(surface) == 1;
         if has_one_way
-            && let Some((rank, ..)) = &self.best
+            && let Some(leader) = &self.best
             && let Ok(bound) = quick_star_bound(&filled.mesh, self.boundary)
         {
             let reaches = (u8::from(bound < GOOD), within(filled.mesh.n_hexes(), bound, self.options.prefer));
-            if bound <= NO_ROOM || *rank <= reaches {
+            if bound <= NO_ROOM || leader.rank <= reaches {
                 self.seen.push(Candidate::new(&filled, Outcome::Bounded(bound)));
                 return Ok(());
             }
@@ -197,7 +168,7 @@ impl<'a> Trial<'a> {
 
     /// Whether a mesh is not the best one, renumbered.
     fn is_new(&self, mesh: &HexMesh) -> bool {
-        self.best.as_ref().is_none_or(|(_, known, _)| hex_isomorphism(&known.mesh, mesh) == Ok(None))
+        self.best.as_ref().is_none_or(|leader| hex_isomorphism(&leader.filled.mesh, mesh) == Ok(None))
     }
 
     /// Shells the surface.
@@ -384,7 +355,7 @@ impl<'a> Trial<'a> {
     }
 
     fn class(&self) -> Option<u8> {
-        self.best.as_ref().map(|((class, _), ..)| *class)
+        self.best.as_ref().map(|leader| leader.rank.0)
     }
 
     /// Whether no other engine need be asked.
@@ -408,8 +379,7 @@ impl<'a> Trial<'a> {
         let prefer = self.options.prefer;
         if self.options.layers.is_some() && filled.route != Route::Shelling {
             // Layers are cut out of a pillow, which shelling puts by itself.
-            let mut pillow = SplitOptions::default();
-            (pillow.below, pillow.layer) = (-1.0, Layer::Always);
+            let pillow = SplitOptions::default().with_below(-1.0).with_layer(Layer::Always);
             let Some(pillowed) = split_stars(&filled.mesh, self.boundary, &pillow, self.ctx) else { return Ok(()) };
             verify(&self.problem.surface, &pillowed.mesh, filled.route)?;
             filled = filled.changed(Maker::Pillows, pillowed.mesh);
@@ -419,7 +389,7 @@ impl<'a> Trial<'a> {
             // Even at a worst scaled Jacobian of 1 it would have too many hexes to be kept; embedding is what costs,
             // so it is not begun.
             let perfect = (0, within(filled.mesh.n_hexes(), 1.0, prefer));
-            if self.best.as_ref().is_some_and(|(r, ..)| *r <= perfect) {
+            if self.best.as_ref().is_some_and(|leader| leader.rank <= perfect) {
                 return Ok(());
             }
         }
@@ -465,9 +435,8 @@ impl<'a> Trial<'a> {
         let rank = rank(&filled, &placed, prefer);
         let outcome = if placed.is_certified() { Outcome::Certified(placed.worst()) } else { Outcome::NotCertified };
         self.seen.push(Candidate::new(&filled, outcome));
-        if self.best.as_ref().is_none_or(|(r, ..)| rank < *r) {
-            self.best = Some((rank, filled, placed));
-            self.is_polished = false;
+        if self.best.as_ref().is_none_or(|leader| rank < leader.rank) {
+            self.best = Some(Leader { rank, filled, placed, is_polished: false });
         }
         Ok(())
     }
@@ -491,10 +460,9 @@ impl<'a> Trial<'a> {
 
     /// The mesh with the stars split that leave (next to) no room; `None` if there are none, or none can be helped.
     fn split(&self, filled: &Filled, bound: f64) -> Result<Option<Filled>, FillError> {
-        let mut options = SplitOptions::default();
         // Pillows are candidates of their own.
-        options.layer = Layer::Never;
-        if bound >= options.below {
+        let options = SplitOptions::default().with_layer(Layer::Never);
+        if bound >= options.below() {
             return Ok(None);
         }
         let Some(split) = split_stars(&filled.mesh, self.boundary, &options, self.ctx) else { return Ok(None) };
@@ -517,53 +485,26 @@ impl<'a> Trial<'a> {
 
     /// Raises the best mesh further, if it was only screened.
     fn polish(&mut self) {
+        let programs = self.budget.programs;
         let limited = self.limited();
-        let is_worth = self.budget.programs > 0 && !std::mem::replace(&mut self.is_polished, true);
-        let Some((standing, filled, placed)) = self.best.as_mut().filter(|_| is_worth) else { return };
-        let open = placed.embedding.as_ref().is_some_and(|e| placed.worst() < RELATIVE * e.target);
-        if !matches!(filled.route, Route::Shelling | Route::Laying)
-            || !placed.is_certified()
-            || !open
-            || limited.stop().is_some()
-        {
-            return;
-        }
-        let all = self.embed.programs();
-        // What is not good yet is worth all of them.
-        let programs = if placed.worst() >= GOOD { all.min(self.budget.programs) } else { all };
-        let more = self.embed.with_starts(1).with_programs(programs);
-        let from = Filled { start: Some(placed.points.clone()), ..filled.clone() };
-        let polished = place_as_it_is(&from, self.boundary, Some(&more), &limited);
-        // What was screened is certified already; the raise must not lose that.
-        if polished.is_certified() && polished.worst() > placed.worst() {
-            *standing = rank(filled, &polished, self.options.prefer);
-            *placed = polished;
+        if let Some(leader) = &mut self.best {
+            leader.polish(self.boundary, self.embed, programs, self.options.prefer, &limited);
         }
     }
 
-    /// Lets tiny cells of the best mesh grow. A scaled Jacobian knows no sizes, and hexes laid round an apex shrink from pillow to pillow.
+    /// Lets tiny cells of the best mesh grow.
     fn inflate(&mut self) {
         let limited = self.limited();
-        let Some((_, filled, placed)) =
-            self.best.as_mut().filter(|(_, f, p)| f.route == Route::Laying && p.is_certified())
-        else {
-            return;
-        };
-        let worst = placed.worst();
-        let floor = if worst >= GOOD { GOOD.max(EVEN * worst) } else { EVEN * worst };
-        // The judge's lower bounds are a little lower.
-        let asked = 1.02 * floor;
-        let Ok(Some(points)) = hexfill_embed::inflate(&filled.mesh, &placed.points, asked, &limited) else { return };
-        let inflated = Placed::judged(&filled.mesh, self.boundary, points, placed.embedding.clone(), None);
-        // Whoever judges has the last word.
-        if inflated.is_certified() && inflated.worst() >= floor {
-            *placed = inflated;
+        if let Some(leader) = &mut self.best {
+            leader.inflate(self.boundary, &limited);
         }
     }
 
     /// Cuts the pillow of the best mesh into the layers asked for, and says how many.
     fn cut_layers(&mut self) -> Result<Option<u32>, FillError> {
-        let (Some(layers), Some((_, filled, placed))) = (self.options.layers, &mut self.best) else { return Ok(None) };
+        let (Some(layers), Some(Leader { filled, placed, .. })) = (self.options.layers, &mut self.best) else {
+            return Ok(None);
+        };
         let surface = &self.problem.surface;
         let made = cut_boundary_layers(&filled.mesh, surface, &placed.points, &layers);
         let Some(CutLayers { mesh, points, origin }) = made else {
@@ -583,7 +524,7 @@ impl<'a> Trial<'a> {
     fn finish(self, why_none: Option<String>, layers: Option<u32>) -> PlacedFill {
         let Self { best, seen, result, ctx, hopeless, .. } = self;
         let choice = Choice {
-            kept: best.as_ref().filter(|_| seen.len() > 1).map(|(_, filled, _)| (filled.mesh.n_hexes(), filled.route)),
+            kept: best.as_ref().filter(|_| seen.len() > 1).map(|b| (b.filled.mesh.n_hexes(), b.filled.route)),
             candidates: seen,
             best_of: None,
             none_tried: why_none,
@@ -594,13 +535,10 @@ impl<'a> Trial<'a> {
             layers,
         };
         let stop = if result.stop == StopReason::Finished { ctx.stop().unwrap_or(result.stop) } else { result.stop };
-        let meshes = best.into_iter().map(|(_, filled, placed)| (filled, Some(placed))).collect();
+        let meshes = best.into_iter().map(|leader| (leader.filled, Some(leader.placed))).collect();
         PlacedFill { meshes, stop, tried: result.tried, choice: (!choice.is_empty()).then_some(choice) }
     }
 }
-
-/// A worst scaled Jacobian of this share of what was strived for is not raised further.
-const RELATIVE: f64 = 0.999;
 
 /// Stars that reach no more than this leave no room for a valid mesh.
 const NO_ROOM: f64 = 1e-6;

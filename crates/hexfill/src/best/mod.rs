@@ -11,8 +11,10 @@ pub(crate) mod choice;
 mod choose;
 pub(crate) mod estimate;
 mod hopeless;
+mod leader;
 mod no_room;
 mod pillows;
+mod rank;
 
 use crate::fill::attempt::Attempt;
 use crate::fill::error::{FillError, check_fillable};

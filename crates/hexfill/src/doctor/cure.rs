@@ -57,7 +57,7 @@ fn weld_seams(data: &mut MeshData) -> Option<String> {
 pub fn cure(name: &str, data: &MeshData, options: &CureOptions) -> Cure {
     let mut data = data.clone();
     let mut done: Vec<String> = weld_seams(&mut data).into_iter().collect();
-    let mended = mend(&soup(&data), &MendOptions { refine: options.refine });
+    let mended = mend(&soup(&data), &MendOptions::default().with_refine(options.refine));
     done.extend(mended.done);
     let mut cured = with_faces(&data, &mended.soup, &mended.origin);
     if let Ok(problem) = Problem::from_data(name, &cured) {

@@ -189,7 +189,7 @@ mod tests {
         }
         use Stage::{Columns, Flips, Grid, Layers, Pillows, Plugs, Residual};
         for stage in [Grid, Columns, Pillows, Plugs, Layers, Flips, Residual] {
-            assert_eq!(Maker::of_stage(stage).words(), stage.to_string());
+            assert_eq!(format!("{:?}", Maker::of_stage(stage)), format!("{stage:?}"));
         }
     }
 

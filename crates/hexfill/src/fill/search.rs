@@ -10,9 +10,7 @@ use crate::fill::maker::Maker;
 use crate::fill::options::{FillOptions, Strategy};
 use hexfill_construct::CellChoice;
 use hexfill_mesh::{Context, HexMesh, QuadSurface, StopReason};
-use hexfill_search::{
-    Atlas, Cavity, FillOptions as InwardOptions, GrowOptions, Growth, GrowthLog, MAX_CAP, fill_from_atlas,
-};
+use hexfill_search::{Atlas, Cavity, FillOptions as InwardOptions, Growth, GrowthLog, MAX_CAP, fill_from_atlas};
 
 /// Atlas, inward flips and, if nothing else may follow, growth.
 pub(crate) fn search(
@@ -83,7 +81,7 @@ fn grow_towards(
         result.tried.push(Attempt::NoGrowth);
         return Ok(());
     }
-    let grow_options = GrowOptions { cap: options.growth.cap.max(surface.n_quads()), ..options.growth };
+    let grow_options = options.growth.with_cap(options.growth.cap().max(surface.n_quads()));
     let (mut log, mut growth) = match &options.growth_log {
         Some(path) => {
             let (log, growth) = GrowthLog::open(path, grow_options)?;
@@ -119,8 +117,8 @@ fn grow_towards(
         }
     }
     result.tried.push(Attempt::Growth {
-        cap: grow_options.cap,
-        width: grow_options.width,
+        cap: grow_options.cap(),
+        width: grow_options.width(),
         hexes: growth.level(),
         classes: growth.n_classes(),
     });

@@ -75,9 +75,9 @@ impl fmt::Display for Record {
     }
 }
 
-/// Who published several of the numbers.
 const VERHETSEL_2018: &str = "Verhetsel, Pellerin, Remacle 2018";
-const VERHETSEL_2019: &str = "Verhetsel, Pellerin, Remacle 2019";
+/// Who published most of the numbers that are compared with.
+pub const VERHETSEL_2019: &str = "Verhetsel, Pellerin, Remacle 2019";
 const TEMPLATES: &str = "joneuhauser/hex-templates 2026";
 
 macro_rules! mesh {

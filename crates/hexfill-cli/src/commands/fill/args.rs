@@ -170,7 +170,7 @@ pub(super) fn fill_options(
             PreferArg::Hexes => Prefer::Hexes,
             PreferArg::Quality => Prefer::Quality,
         })
-        .with_growth(GrowOptions { cap: args.cap, width: args.width.max(1) });
+        .with_growth(GrowOptions::default().with_cap(args.cap).with_width(args.width.max(1)));
     if let Some(file) = &args.atlas {
         options = options.with_atlas(Arc::new(Atlas::read_path(file)?));
     }
