@@ -4,17 +4,19 @@
 //! them at once. What cannot be placed is what fills the last void. So here the sweep stops at the void, all it made is placed, and in the void each hex is
 //! laid where it is valid before the next one comes:
 //!
+//! 0. `pieces`: a large body with limbs is cut across its `waist`s by `membrane`s, disks of quads, into spheres that are filled one by one.
 //! 1. `open_mesh`: sweeps behind a pillow, each until no lens can be emptied. The void is held open by pyramids to one apex (`hexfill_embed::Open`);
 //!    hexes and pyramids are untangled at once. That takes a moment and works nearly always.
 //! 2. `patch`: what lies round the void, so that the rest of a large mesh is not looked at any more.
-//! 3. `plan`: which hexes fill the void, by a sweep, by stirring what it leaves, by the atlas where little is left; topology alone.
+//! 3. `plan`: which hexes fill the void, by a sweep, by stirring what it leaves, by the atlas where little is left; topology alone. Half of the plans begin
+//!    right at the void and avoid what is joined there already, the others behind a pillow.
 //! 4. `void_front`: which of them can be laid now, so that what is left stays a ball.
 //! 5. `laying`: the hexes laid, with positions. A pillow can always be put in by scaling the front towards the apex. Where no hex finds room a pillow
 //!    gives it; where that does not help there is a new plan behind it.
 //! 6. `fewer`: sheets that are not needed any more go, as long as the rest has valid positions.
 //!
 //! When not to use it: where a sweep embeds as it is, which is cheaper and has fewer hexes; where a sweep leaves several voids, or one that no point sees
-//! all of (a body with limbs and a void in each).
+//! all of though no waist cuts it.
 //!
 //! Why a hex always finds room behind enough pillows: the facets of a cube that lie on the front are a disk, its rim a simple circuit of the cube, and
 //! every such circuit is the shadow boundary of some convex position of the cube (Barnette 1970); pillows turn the front, which is

@@ -188,6 +188,13 @@ impl<'a> Trial<'a> {
         is_asked && surface.is_sphere() && surface.n_quads() <= MOST_LAID
     }
 
+    /// Whether a sweep left a residual that was not stirred.
+    fn is_left_open(&self) -> bool {
+        let is_large =
+            |t: &Attempt| matches!(t, Attempt::Shelling { left, .. } if (MOST_STIRRED + 1..usize::MAX).contains(left));
+        self.is_laid_first() && self.result.tried.iter().any(is_large)
+    }
+
     /// Shells the surface with these options.
     fn shell_by(&mut self, shell: ShellOptions) -> Result<(), FillError> {
         let how = FillOptions { shell, ..self.options.clone() };
@@ -224,7 +231,7 @@ impl<'a> Trial<'a> {
         if why_none.is_none() && !smallest {
             self.lay()?;
         }
-        if self.best.is_none() && self.is_laid_first() && self.ctx.stop().is_none() {
+        if self.best.is_none() && self.is_left_open() && self.ctx.stop().is_none() {
             self.shell_by(self.budget.shell.clone())?;
         }
         if self.is_small() && why_none.is_none() {
