@@ -153,19 +153,11 @@ fn to_the_end(mut laying: Laying, seed: u64, most: usize, ctx: &Context<'_>) -> 
         return Some(laying);
     }
     let mut plans = 0;
-    // Pillows since the last hex.
-    let mut jams = 0;
-    // Every other attempt goes on where the sweep ended.
-    let among = if seed.is_multiple_of(2) { None } else { laying.planned_among(seed, ctx) };
-    let mut underway = match among {
-        Some(underway) => underway,
-        None => {
-            // Later plans know nothing of what is outside: they need a pillow between.
-            laying.pillow(&mut [], ctx);
-            jams = 1;
-            next_plan(&laying, seed, &mut plans, ctx)?
-        }
-    };
+    // A plan knows nothing of what is outside: it needs a pillow between.
+    laying.pillow(&mut [], ctx);
+    let mut underway = next_plan(&laying, seed, &mut plans, ctx)?;
+    // Pillows since the last hex; a new plan begins right behind one.
+    let mut jams = 1;
     while !laying.open.front.is_empty() {
         if ctx.stop().is_some() || laying.open.hexes.len() > most {
             return None;

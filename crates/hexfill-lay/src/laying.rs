@@ -79,15 +79,6 @@ impl Laying {
         Some(Underway { rest: (0..plan.hexes.len() as u32).collect(), plan, ids })
     }
 
-    /// A plan for the void that needs no pillow between, as it knows what is joined already.
-    pub(crate) fn planned_among(&self, number: u64, ctx: &Context<'_>) -> Option<Underway> {
-        let OpenMesh { hexes, points, front, .. } = &self.open;
-        let plan = Plan::among(points.len() as u32, hexes, front, number, ctx)?;
-        let mut ids: Vec<u32> = (0..points.len() as u32).collect();
-        ids.resize(plan.n_vertices, NOT_YET);
-        Some(Underway { rest: (0..plan.hexes.len() as u32).collect(), plan, ids })
-    }
-
     /// Lays one hex of the plan where it is valid: those that cover many quads first and, if `any`, others in the order of the plan. False if none was.
     pub(crate) fn lay_one(&mut self, underway: &mut Underway, any: bool, ctx: &Context<'_>) -> bool {
         let candidates = self.candidates(underway, any);

@@ -8,8 +8,7 @@
 //! 1. `open_mesh`: sweeps behind a pillow, each until no lens can be emptied. The void is held open by pyramids to one apex (`hexfill_embed::Open`);
 //!    hexes and pyramids are untangled at once. That takes a moment and works nearly always.
 //! 2. `patch`: what lies round the void, so that the rest of a large mesh is not looked at any more.
-//! 3. `plan`: which hexes fill the void, by a sweep, by stirring what it leaves, by the atlas where little is left; topology alone. Half of the plans begin
-//!    right at the void and avoid what is joined there already, the others behind a pillow.
+//! 3. `plan`: which hexes fill the void, by a sweep, by stirring what it leaves, by the atlas where little is left; topology alone.
 //! 4. `void_front`: which of them can be laid now, so that what is left stays a ball.
 //! 5. `laying`: the hexes laid, with positions. A pillow can always be put in by scaling the front towards the apex. Where no hex finds room a pillow
 //!    gives it; where that does not help there is a new plan behind it.

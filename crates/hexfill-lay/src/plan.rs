@@ -29,21 +29,7 @@ impl Plan {
         // Every other plan for a small void comes from a sweep: fillings of one void differ little.
         let direct = surface.n_quads() <= SMALL && number.is_multiple_of(2);
         let filling = direct.then(|| filling(surface, number as usize / 2, ctx)).flatten();
-        filling.or_else(|| swept(Front::new(surface).ok()?, number, ctx))
-    }
-
-    /// For the void with this front right behind `hexes`, which block what they join, so that no pillow is needed between. Vertices below `n_vertices`
-    /// are those of the hexes.
-    pub(crate) fn among(
-        n_vertices: u32,
-        hexes: &[[u32; 8]],
-        front: &[[u32; 4]],
-        number: u64,
-        ctx: &Context<'_>,
-    ) -> Option<Self> {
-        let mut plan = swept(Front::among(n_vertices, hexes, front).ok()?, number, ctx)?;
-        plan.hexes.drain(..hexes.len());
-        (!plan.hexes.is_empty()).then_some(plan)
+        filling.or_else(|| swept(surface, number, ctx))
     }
 }
 
@@ -56,7 +42,8 @@ fn filling(surface: &QuadSurface, number: usize, ctx: &Context<'_>) -> Option<Pl
 }
 
 /// The hexes of a sweep and of stirring.
-fn swept(mut front: Front, number: u64, ctx: &Context<'_>) -> Option<Plan> {
+fn swept(surface: &QuadSurface, number: u64, ctx: &Context<'_>) -> Option<Plan> {
+    let mut front = Front::new(surface).ok()?;
     let options = |seed| SweepOptions { seed, ..SweepOptions::default() };
     sweep_front(&mut front, &options(number), ctx);
     for stirring in 1..=STIRRINGS {

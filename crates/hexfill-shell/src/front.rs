@@ -80,17 +80,6 @@ impl Front {
         Ok(Self { n_kept: surface.n_vertices() as u32, ..state })
     }
 
-    /// The void with this front among hexes that stay as they are: none of the `n_vertices` vertices is merged with another, and all keep their ids.
-    ///
-    /// # Errors
-    /// [`FrontError`].
-    pub fn among(n_vertices: u32, hexes: &[[u32; 8]], front: &[[u32; 4]]) -> Result<Self, FrontError> {
-        let mut state = Self::try_from_parts(n_vertices, &[], hexes, front)?;
-        state.n_kept = n_vertices;
-        state.fixed.fill(true);
-        Ok(state)
-    }
-
     /// A state to go on from: `n_vertices` vertices in all, the quads of the surface (whose vertices are never merged), the
     /// hexes glued so far (VTK_HEXAHEDRON order) and the front they leave, oriented as the surface.
     ///
@@ -182,10 +171,8 @@ impl Front {
 
     /// The same surface with other hexes and another front.
     pub(crate) fn with(&self, n_vertices: u32, hexes: &[[u32; 8]], front: &[[u32; 4]]) -> Result<Self, FrontError> {
-        let mut state = Self::try_from_parts(n_vertices, &self.surface, hexes, front)?;
-        state.n_kept = self.n_kept;
-        state.fixed[..self.n_kept as usize].fill(true);
-        Ok(state)
+        let state = Self::try_from_parts(n_vertices, &self.surface, hexes, front)?;
+        Ok(Self { n_kept: self.n_kept, ..state })
     }
 
     /// Whether a vertex belongs to the surface.
