@@ -3,6 +3,8 @@
 //! Source: Borden et al. 2002 (a sheet taken out); trying it on positions and keeping what stays valid is ours.
 
 use crate::laid_mesh::LaidMesh;
+use crate::open_mesh::Part;
+use crate::step::Step;
 use hexfill_embed::untangle_near;
 use hexfill_geometry::Vector;
 use hexfill_mesh::Context;
@@ -16,10 +18,19 @@ const EFFORT: (usize, usize) = (2, 300);
 
 /// The mesh without closed sheets that its positions can do without, at most `trials` tried, largest first. A pillow that gave room to a hex is often not
 /// needed any more once the hexes behind it are laid.
-pub(crate) fn without_sheets(mut laid: LaidMesh, n_surface: usize, trials: u32, ctx: &Context<'_>) -> LaidMesh {
+pub(crate) fn without_sheets(
+    mut laid: LaidMesh,
+    n_surface: usize,
+    trials: u32,
+    part: Part,
+    ctx: &Context<'_>,
+) -> LaidMesh {
     let mut tried = 0;
     'next: loop {
-        let all = single_sheet_collapses(&laid.mesh, Collapse::All);
+        let mut all = single_sheet_collapses(&laid.mesh, Collapse::All);
+        if part == Part::Piece {
+            all.retain(|fewer| keeps_pillow(fewer, &laid));
+        }
         for some in all.chunks(TOGETHER) {
             if tried >= trials || ctx.stop().is_some() {
                 return laid;
@@ -33,6 +44,12 @@ pub(crate) fn without_sheets(mut laid: LaidMesh, n_surface: usize, trials: u32, 
         }
         return laid;
     }
+}
+
+/// Whether all hexes of the pillow under the surface are left.
+fn keeps_pillow(fewer: &WithoutSheet, laid: &LaidMesh) -> bool {
+    let n = |steps: &mut dyn Iterator<Item = Step>| steps.filter(|s| *s == Step::Pillow).count();
+    n(&mut fewer.hexes.iter().map(|h| laid.steps[h.index()])) == n(&mut laid.steps.iter().copied())
 }
 
 /// The mesh at valid positions near those it had; `None` if none are found.

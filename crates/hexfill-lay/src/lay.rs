@@ -6,7 +6,7 @@ use crate::fewer::without_sheets;
 use crate::frame::Frame;
 use crate::laid_mesh::LaidMesh;
 use crate::laying::{Laying, Underway};
-use crate::open_mesh::{OpenMesh, Void, swept};
+use crate::open_mesh::{OpenMesh, Part, swept};
 use crate::patch::Patch;
 use crate::pieces::Pieces;
 use hexfill_geometry::Vector;
@@ -50,14 +50,14 @@ pub fn lay(surface: &QuadSurface, points: &[Vector], options: &LayOptions, ctx: 
         return vec![laid];
     }
     let most = if surface.n_quads() > LARGE { 1 } else { KEPT };
-    lay_whole(surface, points, options, Void::Left, most, ctx)
+    lay_whole(surface, points, options, Part::Whole, most, ctx)
 }
 
 /// The mesh of a surface that is cut into pieces; `None` if it is not, or one of them cannot be filled.
 fn in_pieces(surface: &QuadSurface, points: &[Vector], options: &LayOptions, ctx: &Context<'_>) -> Option<LaidMesh> {
     let pieces = Pieces::of(surface, points).filter(|pieces| pieces.pieces.len() > 1)?;
     let laid = pieces.pieces.par_iter().map(|(piece, ids)| {
-        let meshes = lay_whole(piece, &pieces.points_of(ids), options, Void::LeftOrNot, 1, ctx);
+        let meshes = lay_whole(piece, &pieces.points_of(ids), options, Part::Piece, 1, ctx);
         meshes.into_iter().next()
     });
     let mut laid = pieces.joined(surface, laid.collect::<Option<_>>()?)?;
@@ -70,13 +70,13 @@ fn lay_whole(
     surface: &QuadSurface,
     points: &[Vector],
     options: &LayOptions,
-    void: Void,
+    part: Part,
     most: usize,
     ctx: &Context<'_>,
 ) -> Vec<LaidMesh> {
     let frame = Frame::of(points);
     let within: Vec<Vector> = points.iter().map(|&p| frame.enter(p)).collect();
-    let open = swept(surface, &within, void, ctx);
+    let open = swept(surface, &within, part, ctx);
     if open.is_empty() {
         return Vec::new();
     }
@@ -99,7 +99,7 @@ fn lay_whole(
         filled.sort_by_key(Filled::n_hexes);
         filled.truncate(KEPT);
         let mut laid: Vec<LaidMesh> =
-            filled.into_par_iter().filter_map(|filled| filled.whole(options.sheets, ctx)).collect();
+            filled.into_par_iter().filter_map(|filled| filled.whole(options.sheets, part, ctx)).collect();
         laid.sort_by_key(|laid| laid.mesh.n_hexes());
         if most == 1 {
             // Stable: of those with fewest invalid hexes.
@@ -141,8 +141,8 @@ impl<'a> Filled<'a> {
     }
 
     /// The whole mesh, without sheets it can do without near the void.
-    fn whole(self, sheets: u32, ctx: &Context<'_>) -> Option<LaidMesh> {
-        let laid = without_sheets(self.laid, self.patch.n_fixed(), sheets, ctx);
+    fn whole(self, sheets: u32, part: Part, ctx: &Context<'_>) -> Option<LaidMesh> {
+        let laid = without_sheets(self.laid, self.patch.n_fixed(), sheets, part, ctx);
         self.patch.put_back(self.open, laid)
     }
 }

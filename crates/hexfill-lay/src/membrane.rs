@@ -4,7 +4,7 @@
 
 use crate::waist::Waist;
 use hexfill_geometry::{Vector, best_direction, cross, direction, halves, winding_number};
-use hexfill_mesh::QuadSurface;
+use hexfill_mesh::{QuadSurface, chords, chords_by_quad};
 use hexfill_shell::{Front, Quadrangulation};
 use rustc_hash::FxHashMap;
 
@@ -12,7 +12,9 @@ use rustc_hash::FxHashMap;
 const PASSES: usize = 100;
 /// The least that one edge inward from each of its vertices must reach, on both sides.
 const ROOM: f64 = 0.05;
-/// Grids looked at closely, the roomiest first.
+/// From here on more room counts less than fewer self-crossings.
+const ENOUGH: f64 = 0.15;
+/// Grids looked at closely, the best first.
 const CLOSELY: usize = 10;
 
 /// A disk of quads whose rim is a waist.
@@ -32,15 +34,17 @@ pub(crate) fn cut_at(waist: &Waist, quads: &[[u32; 4]], points: &mut Vec<Vector>
     };
     let sides = [side(true), side(false)];
     let is_even = |cut: &Quadrangulation| (cut.quads.len() + sides[0].len()).is_multiple_of(2);
-    let mut membranes: Vec<(f64, Membrane)> = Quadrangulation::grids(waist.circuit.len())
+    let n = |membrane: &Membrane| points.len() + membrane.points.len();
+    let mut membranes: Vec<(f64, usize, Membrane)> = Quadrangulation::grids(waist.circuit.len())
         .filter(is_even)
         .map(|cut| Membrane::new(&cut, &waist.circuit, points))
         .map(|membrane| (membrane.room(&sides, points), membrane))
         .filter(|(room, _)| *room > ROOM)
+        .map(|(room, m)| (room, m.shut(&sides).iter().map(|piece| self_crossings(n(&m), piece)).sum(), m))
         .collect();
-    // Stable: among equals the first.
-    membranes.sort_by(|a, b| b.0.total_cmp(&a.0));
-    membranes.into_iter().take(CLOSELY).find_map(|(_, membrane)| {
+    // The membrane joins the strands that end at the waist, and a chord that crosses itself is what no sweep untangles. Stable: among equals the first.
+    membranes.sort_by(|a, b| (a.0 < ENOUGH, a.1).cmp(&(b.0 < ENOUGH, b.1)).then(b.0.total_cmp(&a.0)));
+    membranes.into_iter().take(CLOSELY).find_map(|(.., membrane)| {
         let pieces = membrane.shut(&sides);
         let n = points.len() + membrane.points.len();
         let is_good = pieces.iter().all(|p| is_proper_sphere(n, p)) && membrane.is_inside(quads, points);
@@ -48,6 +52,13 @@ pub(crate) fn cut_at(waist: &Waist, quads: &[[u32; 4]], points: &mut Vec<Vector>
             points.extend(&membrane.points);
             pieces
         })
+    })
+}
+
+/// The quads that one chord passes twice; all of them if these are no surface.
+fn self_crossings(n_vertices: usize, quads: &[[u32; 4]]) -> usize {
+    QuadSurface::try_new(n_vertices, quads).map_or(quads.len(), |surface| {
+        chords_by_quad(&surface, &chords(&surface)).iter().filter(|[a, b]| a == b).count()
     })
 }
 

@@ -40,21 +40,21 @@ pub(crate) struct OpenMesh {
     pub(crate) forgiven: Vec<u32>,
 }
 
-/// Which sweeps are gone on from.
+/// What is laid.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(crate) enum Void {
-    /// Those that leave a void: a sweep that closes is a mesh already, which others place.
-    Left,
-    /// Those that close, too.
-    LeftOrNot,
+pub(crate) enum Part {
+    /// A surface. A sweep that closes is a mesh already, which others place; the pillow under the surface may go in the end.
+    Whole,
+    /// A piece of one. Sweeps that close count, too; the pillow stays, as the pieces must fit together and there is no other mesh to choose.
+    Piece,
 }
 
 /// The best that sweeps with other ties leave, fewest forgiven hexes first, then fewest hexes as far as one can tell; none if no void can be held open.
-pub(crate) fn swept(surface: &QuadSurface, points: &[Vector], void: Void, ctx: &Context<'_>) -> Vec<OpenMesh> {
+pub(crate) fn swept(surface: &QuadSurface, points: &[Vector], part: Part, ctx: &Context<'_>) -> Vec<OpenMesh> {
     let quiet = Context { progress: None, ..*ctx };
     let sweeps = (QUADS_SWEPT / surface.n_quads().max(1)).clamp(SWEEPS[0], SWEEPS[1]) as u64;
     let mut left: Vec<Swept> =
-        (0..sweeps).into_par_iter().filter_map(|i| left_open(surface, points, void, ctx.seed + i, &quiet)).collect();
+        (0..sweeps).into_par_iter().filter_map(|i| left_open(surface, points, part, ctx.seed + i, &quiet)).collect();
     // Many sweeps end alike.
     let mut seen = FxHashSet::default();
     left.retain(|swept| seen.insert(swept.hexes.clone()));
@@ -66,10 +66,10 @@ pub(crate) fn swept(surface: &QuadSurface, points: &[Vector], void: Void, ctx: &
 }
 
 /// What a sweep behind a pillow leaves, if that is one void of not too many quads.
-fn left_open(surface: &QuadSurface, points: &[Vector], wanted: Void, seed: u64, ctx: &Context<'_>) -> Option<Swept> {
+fn left_open(surface: &QuadSurface, points: &[Vector], part: Part, seed: u64, ctx: &Context<'_>) -> Option<Swept> {
     let options = SweepOptions { pillows: 1, seed, ..SweepOptions::default() };
     let swept = sweep(surface, Some(points), &options, ctx);
-    if swept.front.is_empty() && wanted == Void::LeftOrNot && ctx.stop().is_none() {
+    if swept.front.is_empty() && part == Part::Piece && ctx.stop().is_none() {
         return Some(swept);
     }
     let is_small = (1..=MOST_OPEN).contains(&swept.front.len()) && ctx.stop().is_none();

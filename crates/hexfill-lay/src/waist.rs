@@ -18,7 +18,7 @@ const FAR: usize = 4;
 const FEWEST: usize = 60;
 /// A waist is worth a cut if its length is at most so many times the root of the smaller area it cuts off: a hemisphere has 2.5, half of a rod four times
 /// as long as wide 1.4.
-const NARROW: f64 = 1.6;
+const NARROW: f64 = 2.0;
 
 /// A circuit that cuts a sphere in two.
 #[derive(Clone, Debug)]
