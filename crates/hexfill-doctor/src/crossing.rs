@@ -5,7 +5,7 @@
 //! (Shewchuk 1997) on triangles, by what they share: no vertex (they may not touch), one (they may not meet elsewhere), two
 //! (they may not lie on each other).
 //!
-//! Source: Shewchuk 1997 (the predicates); what counts as crossing is ours.
+//! Source: Shewchuk 1997, sections 4.3 and 4.4 (ORIENT2D, ORIENT3D); what counts as crossing is ours.
 
 use crate::soup::Soup;
 use rayon::prelude::*;

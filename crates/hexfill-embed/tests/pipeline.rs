@@ -44,7 +44,8 @@ fn the_pyramid_with_36_hexes_reaches_its_optimum() {
 fn the_spindle_with_40_hexes_has_coordinates() {
     let sample = Sample::read("spindle_40");
     let mesh = sample.mesh();
-    let options = Options::default().with_starts(1);
+    // One start may end at another optimum, 0.234.
+    let options = Options::default().with_starts(2);
     let done = embed(&mesh, &sample.boundary_points, None, &options, &Context::default()).unwrap();
     let (valid, [lower, _]) = certified(&mesh, &done.points);
     assert!(valid && lower >= 0.239, "{lower}");

@@ -4,7 +4,7 @@
 //! node at the mean of two corners changes nothing (Zienkiewicz, Taylor 2000). What is certified of a hex holds
 //! for its quadratic form, up to the rounding of the middles. Only written: readers keep corners (`linearised` brings them back).
 //!
-//! Source: Zienkiewicz, Taylor 2000 (serendipity elements).
+//! Source: Zienkiewicz, Taylor 2000, chapter 8 (serendipity elements).
 
 use crate::data::MeshData;
 use crate::error::QuadraticError;

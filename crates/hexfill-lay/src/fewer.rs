@@ -13,8 +13,11 @@ use rayon::prelude::*;
 
 /// Sheets tried at once; the first of them that can go goes.
 const TOGETHER: usize = 4;
-/// Rings of vertices and iterations on all, to find positions without a sheet.
+/// Rings of vertices and iterations on all, to find positions without a sheet;
 const EFFORT: (usize, usize) = (2, 300);
+/// in meshes of more hexes than this no iterations on all, which take a second each time, and more rings.
+const LARGE: usize = 800;
+const LARGE_EFFORT: (usize, usize) = (3, 0);
 
 /// The mesh without closed sheets that its positions can do without, at most `trials` tried, largest first. A pillow that gave room to a hex is often not
 /// needed any more once the hexes behind it are laid.
@@ -57,7 +60,8 @@ fn placed(fewer: &WithoutSheet, before: &LaidMesh, n_surface: usize, ctx: &Conte
     let start: Vec<Vector> = fewer.origin.iter().map(|v| before.points[v.index()]).collect();
     debug_assert!((0..n_surface).all(|v| fewer.origin[v].index() == v));
     let quiet = Context { progress: None, ..*ctx };
-    let (points, bad) = untangle_near(&fewer.mesh, &start, EFFORT.0, EFFORT.1, &quiet).ok()?;
+    let (rings, whole) = if fewer.mesh.n_hexes() > LARGE { LARGE_EFFORT } else { EFFORT };
+    let (points, bad) = untangle_near(&fewer.mesh, &start, rings, whole, &quiet).ok()?;
     (bad.len() <= before.invalid).then(|| LaidMesh {
         mesh: fewer.mesh.clone(),
         points,

@@ -5,7 +5,8 @@
 //! (each part by itself). The oriented variant `H1+:` takes rotations only and so tells mirror images apart. Vertices no hex uses do not count. Parts that
 //! share vertices without being connected through quads have no signature: the code of a part does not say how parts hang together.
 //!
-//! Source: ours; a name that is its object's code is Regina's idea of signatures (Burton 2011).
+//! Source: ours; a name that is its object's code is Regina's idea of signatures (Burton 2011, abstract: they identify triangulations up
+//! to isomorphism).
 
 use crate::components::{disagreement, facet_components};
 use crate::cube::FACETS;

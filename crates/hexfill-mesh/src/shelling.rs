@@ -6,7 +6,7 @@
 //! NP-complete (Goaoc, Patak, Patakova, Tancer, Wagner 2019), even for balls (Patak, Tancer 2023); a greedy order is tried from a few starts, so `None` means
 //! "not found", not "none exists".
 //!
-//! Source: Goaoc et al. 2019 and Paták, Tancer 2023 for what cannot be hoped for; the test of one hex and the greedy order are ours.
+//! Source: Goaoc et al. 2019 (abstract: the theorem) and Paták, Tancer 2023 for what cannot be hoped for; the test of one hex and the greedy order are ours.
 
 use crate::cube::{EDGES, FACETS};
 use crate::hexmesh::{Facet, HexMesh};

@@ -12,7 +12,7 @@
 //!
 //! Invariants: every ball with at most H hexes (and the symmetries imposed) is met, up to symmetries of the surface, and none twice in
 //! one piece of the tree; the pieces a tree is cut into depend on surface, bound and group alone, not on threads or machines; a run is
-//! finished only if every piece is in the ledger. Papers: Verhetsel et al. 2018 (bounds by such a search), Smith 1938 (what a
+//! finished only if every piece is in the ledger. Papers: Verhetsel et al. 2018 (abstract: a bound by such a search), Smith 1938 (what a
 //! mirror fixes); the keys are those of the book's bibliography, and its page `search` says what was proved.
 //!
 //! ```

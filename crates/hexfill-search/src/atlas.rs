@@ -3,7 +3,7 @@
 //! A state costs a parent, a flip and the hash of its class. The hash only points: a filling is replayed and its
 //! boundary compared before it is handed out, so a clash of hashes costs time and never a wrong answer.
 //!
-//! Source: Verhetsel et al. 2019 (meshes of small cavities computed once and looked up); kept as flips, by class and blocked pairs, is ours.
+//! Source: Verhetsel et al. 2019, figure 1 (meshes of small cavities computed once and looked up); kept as flips, by class and blocked pairs, is ours.
 
 use crate::atlas_index::{AtlasIndex, HASH_BITS};
 use crate::atlas_states::AtlasStates;

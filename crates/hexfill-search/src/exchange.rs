@@ -4,7 +4,7 @@
 //! [shelled anew](crate::narrow_shelling) if that brought fewer. A class without a filling starts from one found by [inward flips](crate::fill_from_atlas),
 //! however large. Fillings made smaller join what is known, so the next round meets them.
 //!
-//! Source: Verhetsel et al. 2018 (exchange of balls); with an atlas, ours.
+//! Source: Verhetsel et al. 2018 (abstract: groups of hexes get new interiors with fewer); with an atlas, ours.
 
 use crate::atlas::Atlas;
 use crate::cavity::Cavity;

@@ -11,7 +11,7 @@
 //! Determinism: the children of a level are gathered in sets whose content does not depend on their order of arrival,
 //! then numbered by class hash. Any number of threads gives the same atlas.
 //!
-//! Source: ours; gluing outward by flips is Verhetsel et al. 2019 turned round.
+//! Source: ours; gluing outward by flips is Verhetsel et al. 2019 (abstract: a flip of the boundary is a hex glued on it) turned round.
 
 use crate::ball::Ball;
 use crate::canonical::{Canonical, MAX_CODE, code_len, decode};

@@ -5,7 +5,7 @@
 //! filling of the rest must avoid them: then the whole obeys proper intersection, by the same pair table that makes a
 //! single flip legal.
 //!
-//! Source: Verhetsel et al. 2019 (flips from the boundary until the cavity is a known one); the beam and the blocked pairs are ours.
+//! Source: Verhetsel et al. 2019, figure 1 (flips from the boundary until the cavity is a known one); the beam and the blocked pairs are ours.
 
 use crate::atlas::Atlas;
 use crate::ball::mirror_image;

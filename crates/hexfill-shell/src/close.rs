@@ -3,7 +3,7 @@
 //! What is behind the front blocks pairs of its vertices: the filling must avoid them, so that the whole is proper. The atlas knows several
 //! fillings of many spheres. Where none fits, or blocked pairs cost too much, a pillow goes first: behind it nothing is blocked.
 //!
-//! Source: Verhetsel et al. 2019 (a cavity is looked up among known meshes); fillings that avoid what is there already are ours.
+//! Source: Verhetsel et al. 2019, figure 1 (a cavity is looked up among known meshes); fillings that avoid what is there already are ours.
 
 use crate::front::Front;
 use hexfill_mesh::{Context, QuadSurface};

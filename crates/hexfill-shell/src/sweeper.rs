@@ -10,7 +10,7 @@
 //! Where wants are stated (see `zip`), a lens is first emptied by flips that cost next to nothing, and single such flips are made though they empty
 //! no lens; only then come all others, smallest lens first, and in it the flip that costs least.
 //!
-//! Source: Chang, Erickson 2017, who untangle n crossings by O(n^(3/2)) moves; one transaction a lens and the heap are ours.
+//! Source: Chang, Erickson 2017, who untangle n crossings by O(n^(3/2)) moves (abstract); one transaction a lens and the heap are ours.
 
 use crate::dart::{next, opposite};
 use crate::front::{Front, Mark};

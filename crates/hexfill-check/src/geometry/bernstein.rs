@@ -6,7 +6,7 @@
 //! coefficients give the rest: because the edge vectors are differences of 8 points,
 //! `face = (2 * its four edges - its four corners) / 4` and `centre = (all edges - all corners) / 4`.
 //!
-//! Source: Johnen, Weill, Remacle 2017, whose 20 determinants give all 27 coefficients.
+//! Source: Johnen, Weill, Remacle 2017 (abstract: 20 determinants give all 27 coefficients).
 
 use hexfill_mesh::cube::corner_at;
 

@@ -1,7 +1,7 @@
 //! det J > 0 in exact arithmetic. Doubles are dyadic rationals: scaled by one power of two the coordinates of a hex are
 //! integers, and so are 8 times its Bernstein coefficients. The statement is about the stored numbers.
 //!
-//! Source: Johnen, Weill, Remacle 2017 for the coefficients; exact arithmetic instead of a tolerance is ours.
+//! Source: Johnen, Weill, Remacle 2017 (abstract) for the coefficients; exact arithmetic instead of a tolerance is ours.
 
 use super::bernstein::{CORNERS, Cell, Vector, at, edge_corners};
 use super::verdict::Positivity;

@@ -1,6 +1,6 @@
 //! Quality numbers of hexes: scaled Jacobian at the corners, Verdict's, certified; condition number, edge ratio, volume.
 //!
-//! Source: Knupp et al. 2006 (Verdict's numbers); the certified interval is ours.
+//! Source: Knupp et al. 2006, chapter 7 (sections Edge Ratio, Maximum Aspect Frobenius, Scaled Jacobian); volume and the certified interval are ours.
 
 use super::bernstein::{CORNERS, Frame, Lengths, Vector, cross, dot, norm};
 use super::positivity::decide;

@@ -7,7 +7,7 @@
 //! what allows any two cells to meet (see the page `construction` of the book). A filling that is not wall-safe
 //! is made so by [`Cell::pillowed`].
 //!
-//! Source: Eppstein 1999 for the idea of a few cells once and for all; the cells and the condition of wall-safety are ours.
+//! Source: Eppstein 1999 (abstract: a finite case analysis) for the idea of a few cells once and for all; the cells and the condition of wall-safety are ours.
 
 use super::pattern::{Pattern, Role};
 use hexfill_mesh::cube::{BODY_DIAGONALS, EDGES, FACET_DIAGONALS, FACETS};

@@ -3,7 +3,7 @@
 //! It is Verdict's: `|J| |J^-1| / 3` in the Frobenius norm, 1 for a cube
 //! (Knupp et al., Verdict library reference manual, 2006).
 //!
-//! Source: Knupp et al. 2006.
+//! Source: Knupp et al. 2006, chapter 7, section Maximum Aspect Frobenius, which says that this was called the condition number.
 
 use hexfill_geometry::{Vector, cross, dot};
 

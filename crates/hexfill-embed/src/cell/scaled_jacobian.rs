@@ -2,7 +2,7 @@
 //!
 //! The determinant of the three columns of J over the product of their lengths: the volume that their directions span, 1 for a cube.
 //!
-//! Source: Knupp et al. 2006 for the measure at corners; at any point of a cell it is the same formula.
+//! Source: Knupp et al. 2006, chapter 7, section Scaled Jacobian, for the measure at corners; at any point of a cell it is the same formula.
 
 use hexfill_geometry::{Vector, add, cross, det, norm, scale};
 

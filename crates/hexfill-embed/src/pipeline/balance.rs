@@ -1,6 +1,6 @@
 //! The balanced objective: a good worst condition number at nearly the best worst scaled Jacobian.
 //!
-//! Source: ours; the condition number is that of Knupp et al. 2006.
+//! Source: ours; the condition number is that of Knupp et al. 2006, chapter 7, section Maximum Aspect Frobenius.
 
 use super::one_start::Candidate;
 use crate::improvement::{Goal, ProgramLimits, climb};

@@ -6,7 +6,7 @@
 //! ([`super::circle_packing`]), laid out and lifted to the sphere ([`super::circle_layout`]), and centred with Lorentz boosts.
 //! A vertex is the apex of the cone that touches the sphere along its circle.
 //!
-//! Source: Springborn 2005; Bobenko, Springborn 2004.
+//! Source: Springborn 2005 (abstract: the lemma on barycentres, the unique representative); Bobenko, Springborn 2004.
 
 use super::circle_layout::touching_points;
 use super::circle_packing::Packing;

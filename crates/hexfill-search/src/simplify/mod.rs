@@ -12,7 +12,7 @@
 //! and their offers are then placed in order, those that no longer fit being dropped. So the result is the same for any number
 //! of threads, unless the clock ends it.
 //!
-//! Source: Verhetsel et al. 2018 (balls exchanged for smaller ones), Kirkpatrick et al. 1983 (annealing).
+//! Source: Verhetsel et al. 2018 (abstract: groups of hexes get new interiors with fewer), Kirkpatrick et al. 1983 (annealing).
 
 mod collapse;
 #[cfg(test)]

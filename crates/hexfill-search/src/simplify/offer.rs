@@ -5,7 +5,7 @@
 //! edge or quad they span would use one pair twice (see `flip.rs`). So a proper mesh stays proper, and since ball replaces
 //! ball, it stays what it was as a space.
 //!
-//! Source: Verhetsel et al. 2018; that blocked pairs are all there is to check is ours.
+//! Source: Verhetsel et al. 2018 (abstract: groups of hexes get new interiors with fewer); that blocked pairs are all there is to check is ours.
 
 use crate::atlas::Atlas;
 use crate::ball::Ball;

@@ -1,6 +1,6 @@
 //! Small spheres: the atlas, inward flips, and growth of an atlas towards the surface.
 //!
-//! Source: Verhetsel et al. 2019, in the order atlas, flips, growth, which is ours.
+//! Source: Verhetsel et al. 2019, figure 1, in the order atlas, flips, growth, which is ours.
 
 use crate::fill::attempt::Attempt;
 use crate::fill::error::FillError;

@@ -6,7 +6,8 @@
 //! is positively oriented, always. The points live in one huge tet; its four corners are vertices like all others.
 //! Invariant: `around[t][i]` is the tet across the face of `t` opposite its vertex `i`, none at the huge tet.
 //!
-//! Source: Bowyer 1981, Watson 1981; Edelsbrunner 1990 (why the walk to a point ends); Shewchuk 1997 (the predicates).
+//! Source: Bowyer 1981, Watson 1981; Edelsbrunner 1990 (why the walk to a point ends); Shewchuk 1997, section 4.4 (ORIENT3D,
+//! INSPHERE).
 
 use crate::core::complex::OUTWARD;
 use crate::ids::TetId;
