@@ -91,7 +91,7 @@ struct Flow<'a> {
 impl<'a> Flow<'a> {
     fn new(surface: &'a QuadSurface, points: &[Vector]) -> Self {
         let at = |d: Dart| [surface.origin(d), surface.target(d)].map(|v| points[v.index()]);
-        let room: Vec<f64> = surface.darts().map(|d| at(d)).map(|[p, q]| norm(sub(p, q))).collect();
+        let room: Vec<f64> = surface.darts().map(at).map(|[p, q]| norm(sub(p, q))).collect();
         let least = 1e-9 * room.iter().fold(0.0, |a: f64, &b| a.max(b));
         Self { surface, room, least }
     }

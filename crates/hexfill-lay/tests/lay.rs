@@ -50,7 +50,7 @@ fn a_surface_that_no_sweep_embeds_gets_valid_meshes_of_few_hexes() {
 /// Two blocks joined by a bar: cut across the bar, each piece filled for itself.
 #[test]
 fn a_body_with_a_waist_is_filled_in_pieces() {
-    let is_in = |[x, y, z]: [usize; 3]| x < 7 || x >= 11 || (2..5).contains(&y) && (2..5).contains(&z);
+    let is_in = |[x, y, z]: [usize; 3]| !(7..11).contains(&x) || (2..5).contains(&y) && (2..5).contains(&z);
     let (surface, cells) = voxels([18, 7, 7], is_in).unwrap();
     let points: Points = cells.into_iter().map(|p| p.map(f64::from)).collect();
     let made = lay(&surface, &points, &LayOptions::default(), &Context::default());
@@ -63,8 +63,7 @@ fn place_and_size_do_not_matter() {
     let (surface, points) = radial();
     let moved: Points =
         points.iter().map(|p| [0, 1, 2].map(|k: usize| 1e-4f64.mul_add(p[k], [5.0, -3.0, 0.25][k]))).collect();
-    let mut options = LayOptions::default();
-    options.batches = 1;
+    let options = LayOptions::default().with_batches(1);
     let made = lay(&surface, &moved, &options, &Context::default());
     assert_sound(&surface, &moved, &made[0]);
 }
