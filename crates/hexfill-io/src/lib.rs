@@ -32,6 +32,7 @@ mod formats;
 mod groups;
 mod limits;
 mod losses;
+mod numbers;
 pub mod orders;
 mod quadratic;
 mod quadratic_cells;

@@ -9,15 +9,15 @@
 use crate::assembly::{Assembly, Slot};
 use crate::data::{MeshData, TagOn};
 use crate::error::{ReadError, snippet};
-use crate::formats::msh::Numbers;
 use crate::groups::{Combination, Groups, NONE};
+use crate::numbers::Numbers;
 use crate::orders::ABAQUS_FACES;
 use crate::source::{Source, parse_integer};
 use rustc_hash::FxHashMap;
 
 mod write;
 
-pub(crate) use write::write;
+pub(crate) use write::{MOST, write};
 
 /// The surface of all quads on hexes; not a name of a tag.
 const BOUNDARY: &str = "BOUNDARY";
@@ -467,5 +467,7 @@ fn finish(mut r: Reader<'_>) -> Result<MeshData, ReadError> {
     let tags = r.node_sets.tags(r.of_node.iter().copied());
     r.out.point_tags = r.of_node.iter().map(|&c| tags.of(c)).collect();
     r.out.name_tags(tags.names(TagOn::Points));
-    Ok(r.out.finish())
+    let mut mesh = r.out.finish();
+    r.nodes.keep(&mut mesh);
+    Ok(mesh)
 }

@@ -8,8 +8,8 @@
 use crate::assembly::{Assembly, Slot};
 use crate::data::{MeshData, TagOn};
 use crate::error::{ReadError, snippet};
-use crate::formats::msh::Numbers;
 use crate::groups::{Combination, Groups, NONE, name_of};
+use crate::numbers::{NodeNumbers, Numbers};
 use crate::orders::{UNV_HEX20, UNV_QUAD8};
 use crate::quadratic::{written_faces, written_hexes};
 use crate::source::Source;
@@ -278,7 +278,9 @@ fn finish(mut r: Reader<'_>) -> Result<MeshData, ReadError> {
     }
     r.out.mesh.middles = middles;
     place_groups(&mut r, &slots);
-    Ok(r.out.finish())
+    let mut mesh = r.out.finish();
+    r.numbers.keep(&mut mesh);
+    Ok(mesh)
 }
 
 /// Groups become tags; numbers that nothing has are passed over.
@@ -317,11 +319,15 @@ fn real(x: f64) -> String {
     format!("{digits}D{exponent:+03}")
 }
 
+/// The largest number of a node.
+pub(crate) const MOST: u64 = 2_147_483_647;
+
 pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
     writeln!(out, "    -1\n  2411")?;
+    let numbers = NodeNumbers::new(data, MOST);
     for (i, point) in data.points.iter().enumerate() {
         let [x, y, z] = point.map(real);
-        writeln!(out, "{:>10}{:>10}{:>10}{:>10}\n{x:>25}{y:>25}{z:>25}", i + 1, 1, 1, 11)?;
+        writeln!(out, "{:>10}{:>10}{:>10}{:>10}\n{x:>25}{y:>25}{z:>25}", numbers.of(i), 1, 1, 11)?;
     }
     writeln!(out, "    -1\n    -1\n  2412")?;
     let faces = written_faces(data).map(|(face, _)| {
@@ -337,28 +343,28 @@ pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
     let wedges = data.wedges.iter().map(|cell| (112, cell.as_slice()));
     for (i, (descriptor, nodes)) in faces.chain(hexes).chain(tets).chain(wedges).enumerate() {
         writeln!(out, "{:>10}{descriptor:>10}{:>10}{:>10}{:>10}{:>10}", i + 1, 1, 1, 7, nodes.len())?;
-        write_nodes(out, descriptor, nodes)?;
+        write_nodes(out, descriptor, nodes, &numbers)?;
     }
     writeln!(out, "    -1")?;
-    write_groups(out, data)
+    write_groups(out, data, &numbers)
 }
 
-/// The nodes of an element in the order of I-DEAS, eight a line, counted from 1.
-fn write_nodes(out: &mut dyn Write, descriptor: i64, nodes: &[u32]) -> io::Result<()> {
+/// The nodes of an element in the order of I-DEAS, eight a line.
+fn write_nodes(out: &mut dyn Write, descriptor: i64, nodes: &[u32], numbers: &NodeNumbers) -> io::Result<()> {
     let order: &[usize] = match descriptor {
         95 => &UNV_QUAD8,
         116 => &UNV_HEX20,
         _ => &[0, 1, 2, 3, 4, 5, 6, 7][..nodes.len()],
     };
     for line in order.chunks(8) {
-        line.iter().try_for_each(|&i| write!(out, "{:>10}", u64::from(nodes[i]) + 1))?;
+        line.iter().try_for_each(|&i| write!(out, "{:>10}", numbers.of(nodes[i] as usize)))?;
         out.write_all(b"\n")?;
     }
     Ok(())
 }
 
 /// A group for each name of a tag; tags without one are called `tag_n`.
-fn write_groups(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
+fn write_groups(out: &mut dyn Write, data: &MeshData, numbers: &NodeNumbers) -> io::Result<()> {
     let names = data.names_by_tag();
     let mut groups: BTreeMap<(TagOn, String), Vec<usize>> = BTreeMap::new();
     let mut add = |on: TagOn, tag: i64, number: usize| {
@@ -370,7 +376,7 @@ fn write_groups(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
     };
     data.numbered_faces().enumerate().for_each(|(i, (.., tag))| add(TagOn::Faces, tag, i + 1));
     (0..data.hexes.len()).for_each(|h| add(TagOn::Cells, data.hex_tag(h), data.face_count() + h + 1));
-    data.point_tags.iter().flatten().enumerate().for_each(|(v, &tag)| add(TagOn::Points, tag, v + 1));
+    data.point_tags.iter().flatten().enumerate().for_each(|(v, &tag)| add(TagOn::Points, tag, numbers.of(v) as usize));
     if groups.is_empty() {
         return Ok(());
     }

@@ -5,6 +5,7 @@
 use super::BOUNDARY;
 use crate::data::{MeshData, TagOn};
 use crate::groups::name_of;
+use crate::numbers::NodeNumbers;
 use crate::orders::ABAQUS_FACES;
 use crate::quadratic::{written_faces, written_hexes};
 use crate::write::write_point;
@@ -12,11 +13,15 @@ use rustc_hash::FxHashMap;
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 
+/// The largest number of a node.
+pub(crate) const MOST: u64 = 999_999_999;
+
 pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
     writeln!(out, "*HEADING\nhexfill: {} hexes, {} faces", data.hexes.len(), data.face_count())?;
     writeln!(out, "*NODE")?;
+    let numbers = NodeNumbers::new(data, MOST);
     for (i, point) in data.points.iter().enumerate() {
-        write!(out, "{}, ", i + 1)?;
+        write!(out, "{}, ", numbers.of(i))?;
         write_point(out, point, ", ")?;
         out.write_all(b"\n")?;
     }
@@ -27,7 +32,7 @@ pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
         .filter(|((quad, ..), _)| quad.is_none_or(|q| sides[q].is_none()))
         .map(|(_, face)| face)
         .collect();
-    write_elements(out, data, &shells)?;
+    write_elements(out, data, &shells, &numbers)?;
     // Each set once: meshio forgets all but the last part of a set that is spread over several blocks.
     let names = SetNames::new(data);
     let first_hex = shells.len() + 1;
@@ -41,14 +46,19 @@ pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
     write_sets(out, "ELSET", &sets)?;
     let mut sets = Sets::new();
     for (i, &tag) in data.point_tags.iter().flatten().enumerate() {
-        names.add(&mut sets, TagOn::Points, tag, i + 1);
+        names.add(&mut sets, TagOn::Points, tag, numbers.of(i) as usize);
     }
     write_sets(out, "NSET", &sets)?;
     write_surfaces(out, data, &sides, &names, first_hex)
 }
 
 /// Shells, hexes and other cells, numbered from 1 in this order.
-fn write_elements(out: &mut dyn Write, data: &MeshData, shells: &[(&[u32], i64)]) -> io::Result<()> {
+fn write_elements(
+    out: &mut dyn Write,
+    data: &MeshData,
+    shells: &[(&[u32], i64)],
+    numbers: &NodeNumbers,
+) -> io::Result<()> {
     let shells = shells.iter().map(|(face, _)| {
         let element_type = match face.len() {
             3 => "S3",
@@ -71,7 +81,7 @@ fn write_elements(out: &mut dyn Write, data: &MeshData, shells: &[(&[u32], i64)]
         for (k, &node) in nodes.iter().enumerate() {
             // At most 16 numbers a line.
             let separator = if k == 15 { ",\n" } else { ", " };
-            write!(out, "{separator}{}", u64::from(node) + 1)?;
+            write!(out, "{separator}{}", numbers.of(node as usize))?;
         }
         out.write_all(b"\n")?;
     }

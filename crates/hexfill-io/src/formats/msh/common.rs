@@ -6,11 +6,11 @@ use crate::assembly::{Assembly, Slot, Values};
 use crate::data::MeshData;
 use crate::error::ReadError;
 use crate::groups::{Combination, Groups, NONE};
+use crate::numbers::{NodeNumbers, Numbers};
 use crate::orders::{GMSH_HEX20, reorder};
 use crate::quadratic::{written_faces, written_hexes};
 use crate::source::{Source, Span};
-use crate::write::write_indices;
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashSet;
 use std::io::{self, Write};
 
 /// Numbers of nodes of Gmsh's element types 1 to 31 (0: no such type here).
@@ -51,36 +51,8 @@ pub(crate) fn straight(element_type: i64) -> (i64, usize) {
     }
 }
 
-/// From the numbers of a file to positions in it. Numbers that simply count up cost nothing.
-#[derive(Default)]
-pub(crate) struct Numbers {
-    first: i64,
-    count: u32,
-    map: Option<FxHashMap<i64, u32>>,
-}
-
-impl Numbers {
-    /// Adds the next number; false if it is there already (it then means the last one).
-    pub(crate) fn push(&mut self, number: i64) -> bool {
-        if self.count == 0 {
-            self.first = number;
-        }
-        if self.map.is_none() && number != self.first.wrapping_add(i64::from(self.count)) {
-            let first = self.first;
-            self.map = Some((0..self.count).map(|i| (first.wrapping_add(i64::from(i)), i)).collect());
-        }
-        let known = self.map.as_mut().is_some_and(|map| map.insert(number, self.count).is_some());
-        self.count += 1;
-        !known
-    }
-
-    pub(crate) fn get(&self, number: i64) -> Option<u32> {
-        match &self.map {
-            Some(map) => map.get(&number).copied(),
-            None => u32::try_from(number.checked_sub(self.first)?).ok().filter(|&i| i < self.count),
-        }
-    }
-}
+/// The largest number of a node: whole numbers up to here are the same in floating point, as data on points.
+pub(crate) const MOST: u64 = 1 << 53;
 
 /// A file being read.
 pub(crate) struct Reader<'r> {
@@ -212,10 +184,10 @@ impl Reader<'_> {
     /// The position of a node number.
     pub(crate) fn node(&self, number: i64) -> Result<u32, ReadError> {
         self.nodes.get(number).ok_or_else(|| {
-            let count = self.nodes.count as usize;
             // The message counts the numbers of the file where they are simple.
-            match self.s.checked_index(number, self.nodes.first, count, "node") {
-                Err(e) if self.nodes.map.is_none() => e,
+            let range = self.nodes.simple_range();
+            match range.map(|(first, count)| self.s.checked_index(number, first, count, "node")) {
+                Some(Err(e)) => e,
                 _ => {
                     self.s.malformed_text("the number of a node", format!("{number}, which no node has"), "correct it")
                 }
@@ -451,10 +423,11 @@ pub(crate) fn elements(data: &MeshData) -> impl Iterator<Item = (i64, &[u32], i6
 }
 
 /// Writes the nodes of an element in the order of Gmsh, counted from 1.
-pub(crate) fn write_nodes(out: &mut dyn Write, nodes: &[u32]) -> io::Result<()> {
+pub(crate) fn write_nodes(out: &mut dyn Write, nodes: &[u32], numbers: &NodeNumbers) -> io::Result<()> {
+    let mut write = |nodes: &[u32]| nodes.iter().try_for_each(|&v| write!(out, " {}", numbers.of(v as usize)));
     match <[u32; 20]>::try_from(nodes) {
-        Ok(nodes) => write_indices(out, &reorder(nodes, GMSH_HEX20), 1),
-        Err(_) => write_indices(out, nodes, 1),
+        Ok(nodes) => write(&reorder(nodes, GMSH_HEX20)),
+        Err(_) => write(nodes),
     }
 }
 

@@ -14,7 +14,6 @@ mod sections;
 mod v2;
 mod v4;
 
-pub(crate) use common::Numbers;
 pub(crate) use read::read;
 pub(crate) use v2::write as write22;
 pub(crate) use v4::write as write41;

@@ -49,7 +49,9 @@ pub(crate) fn read(mut s: Source<'_>) -> Result<MeshData, ReadError> {
     }
     reader.groups_as_tags();
     reader.entities_as_tags();
-    Ok(reader.out.finish())
+    let mut mesh = reader.out.finish();
+    reader.nodes.keep(&mut mesh);
+    Ok(mesh)
 }
 
 /// To the line behind `$MeshFormat`. Comments may come before it.

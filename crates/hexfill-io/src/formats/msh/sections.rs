@@ -5,6 +5,7 @@
 use super::common::{HEX, QUAD, elements, straight};
 use crate::arrays::{self, CellColumn, component};
 use crate::data::MeshData;
+use crate::numbers::{NODE, NodeNumbers};
 use crate::write::{Real, unquoted};
 use std::io::{self, Write};
 
@@ -19,14 +20,21 @@ pub(crate) enum Layout {
 }
 
 /// The data sections at the end of a file.
-pub(crate) fn write_data(out: &mut dyn Write, data: &MeshData, several_kinds: Layout) -> io::Result<()> {
+pub(crate) fn write_data(
+    out: &mut dyn Write,
+    data: &MeshData,
+    numbers: &NodeNumbers,
+    several_kinds: Layout,
+) -> io::Result<()> {
     if let Some(tags) = &data.point_tags {
         let values: Vec<f64> = tags.iter().map(|&t| t as f64).collect();
-        write_on_points(out, "tag", &[&values])?;
+        write_on_points(out, "tag", &[&values], numbers)?;
     }
-    for (name, columns) in arrays::on_points(data) {
+    // Numbers of nodes stand where the nodes are.
+    let is_said = |name: &str| name == NODE && numbers.are_given();
+    for (name, columns) in arrays::on_points(data).into_iter().filter(|(name, _)| !is_said(name)) {
         for (name, columns) in as_gmsh_has_them(name, columns) {
-            write_on_points(out, &name, &columns)?;
+            write_on_points(out, &name, &columns, numbers)?;
         }
     }
     let mut types = elements(data).map(|(element_type, ..)| element_type);
@@ -56,11 +64,11 @@ fn begin(out: &mut dyn Write, section: &str, name: &str, components: usize, n: u
     writeln!(out, "${section}\n1\n\"{}\"\n1\n0.0\n3\n0\n{components}\n{n}", unquoted(name))
 }
 
-fn write_on_points(out: &mut dyn Write, name: &str, columns: &[&[f64]]) -> io::Result<()> {
+fn write_on_points(out: &mut dyn Write, name: &str, columns: &[&[f64]], numbers: &NodeNumbers) -> io::Result<()> {
     let n = columns[0].len();
     begin(out, "NodeData", name, columns.len(), n)?;
     for i in 0..n {
-        write!(out, "{}", i + 1)?;
+        write!(out, "{}", numbers.of(i))?;
         for column in columns {
             write!(out, " {}", Real(column[i]))?;
         }

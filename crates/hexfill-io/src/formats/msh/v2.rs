@@ -2,12 +2,13 @@
 //!
 //! Source: the Gmsh manual, "MSH file format version 2".
 
-use super::common::{Reader, dimension, elements, nodes_of, write_nodes};
+use super::common::{MOST, Reader, dimension, elements, nodes_of, write_nodes};
 use super::physical::Physical;
 use super::sections::{Layout, write_data};
 use crate::data::MeshData;
 use crate::error::ReadError;
 use crate::groups::Combination;
+use crate::numbers::NodeNumbers;
 use crate::source::reserve;
 use crate::write::write_point;
 use std::collections::BTreeMap;
@@ -158,8 +159,9 @@ pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
     writeln!(out, "$MeshFormat\n2.2 0 8\n$EndMeshFormat")?;
     Physical::new(data, false, false).write_names(out)?;
     writeln!(out, "$Nodes\n{}", data.points.len())?;
+    let numbers = NodeNumbers::new(data, MOST);
     for (i, point) in data.points.iter().enumerate() {
-        write!(out, "{} ", i + 1)?;
+        write!(out, "{} ", numbers.of(i))?;
         write_point(out, point, " ")?;
         out.write_all(b"\n")?;
     }
@@ -175,9 +177,9 @@ pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
     for (i, (element_type, nodes, tag)) in elements(data).enumerate() {
         let entity = entities[&(dimension(element_type), tag)];
         write!(out, "{} {element_type} 2 {tag} {entity}", i + 1)?;
-        write_nodes(out, nodes)?;
+        write_nodes(out, nodes, &numbers)?;
         out.write_all(b"\n")?;
     }
     writeln!(out, "$EndElements")?;
-    write_data(out, data, Layout::NodesOfElements)
+    write_data(out, data, &numbers, Layout::NodesOfElements)
 }

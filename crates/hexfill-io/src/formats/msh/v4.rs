@@ -2,11 +2,12 @@
 //!
 //! Source: the Gmsh manual, "MSH file format".
 
-use super::common::{Reader, dimension, elements, nodes_of, write_nodes};
+use super::common::{MOST, Reader, dimension, elements, nodes_of, write_nodes};
 use super::physical::Physical;
 use super::sections::{Layout, write_data};
 use crate::data::MeshData;
 use crate::error::ReadError;
+use crate::numbers::NodeNumbers;
 use crate::source::reserve;
 use crate::write::{Real, write_point};
 use rustc_hash::FxHashMap;
@@ -257,12 +258,14 @@ pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
         writeln!(out, " 0")?;
     }
     let n = data.points.len();
-    writeln!(out, "$EndEntities\n$Nodes\n{} {n} {} {n}", usize::from(n > 0), usize::from(n > 0))?;
+    let numbers = NodeNumbers::new(data, MOST);
+    let [least, largest] = numbers.range(n);
+    writeln!(out, "$EndEntities\n$Nodes\n{} {n} {least} {largest}", usize::from(n > 0))?;
     if n > 0 {
         writeln!(out, "{home} 1 0 {n}")?;
     }
-    for i in 1..=n {
-        writeln!(out, "{i}")?;
+    for i in 0..n {
+        writeln!(out, "{}", numbers.of(i))?;
     }
     for point in &data.points {
         write_point(out, point, " ")?;
@@ -285,10 +288,10 @@ pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
         writeln!(out, "{dim} {} {element_type} {count}", entities[&(dim, tag)])?;
         for (i, (_, nodes, _)) in all.by_ref().take(count) {
             write!(out, "{}", i + 1)?;
-            write_nodes(out, nodes)?;
+            write_nodes(out, nodes, &numbers)?;
             out.write_all(b"\n")?;
         }
     }
     writeln!(out, "$EndElements")?;
-    write_data(out, data, Layout::Elements)
+    write_data(out, data, &numbers, Layout::Elements)
 }

@@ -12,13 +12,13 @@ mod write;
 use crate::assembly::{Assembly, Slot};
 use crate::data::MeshData;
 use crate::error::{ReadError, snippet};
-use crate::formats::msh::Numbers;
 use crate::groups::{Combination, Groups, NONE};
+use crate::numbers::Numbers;
 use crate::source::{Source, parse_integer};
 use card::{Card, parse_real};
 use rustc_hash::FxHashMap;
 
-pub(crate) use write::{rounded, write};
+pub(crate) use write::{MOST, rounded, write};
 
 /// How comments begin that say which tag a property stands for, where they differ.
 const PROPERTY_LINE: &str = "hexfill: property";
@@ -300,5 +300,7 @@ fn finish(mut r: Reader<'_>) -> Result<MeshData, ReadError> {
         }
     }
     r.out.name_tags(r.s.take_tag_names().into_iter());
-    Ok(r.out.finish())
+    let mut mesh = r.out.finish();
+    r.numbers.keep(&mut mesh);
+    Ok(mesh)
 }

@@ -5,10 +5,14 @@
 use super::PROPERTY_LINE;
 use super::card::parse_real;
 use crate::data::{MeshData, TagOn};
+use crate::numbers::NodeNumbers;
 use crate::orders::{NASTRAN_HEX20, reorder};
 use crate::quadratic::{written_faces, written_hexes};
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Write};
+
+/// The largest number of a point.
+pub(crate) const MOST: u64 = 99_999_999;
 
 /// Characters of a wide field.
 const WIDE: usize = 16;
@@ -77,9 +81,10 @@ pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
         writeln!(out, "${PROPERTY_LINE} {number} has tag {tag}")?;
     }
     writeln!(out, "BEGIN BULK")?;
+    let numbers = NodeNumbers::new(data, MOST);
     for (i, point) in data.points.iter().enumerate() {
         let [x, y, z] = point.map(real);
-        writeln!(out, "GRID*   {:>16}{:>16}{x:>16}{y:>16}\n*       {z:>16}", i + 1, "")?;
+        writeln!(out, "GRID*   {:>16}{:>16}{x:>16}{y:>16}\n*       {z:>16}", numbers.of(i), "")?;
     }
     let mut number = 0;
     let mut element = |name: &str, on: TagOn, tag: i64, nodes: &[u32]| -> io::Result<()> {
@@ -90,7 +95,7 @@ pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
             if i == 6 || i == 14 {
                 out.write_all(b"+\n+       ")?;
             }
-            write!(out, "{:>8}", u64::from(node) + 1)?;
+            write!(out, "{:>8}", numbers.of(node as usize))?;
         }
         out.write_all(b"\n")
     };
