@@ -86,7 +86,8 @@ mod tests {
     /// Two blocks of 7 x 7 x 7 cubes joined by a bar of 3 x 3 x 4.
     fn dumbbell() -> (QuadSurface, Vec<Vector>) {
         let (surface, cells) =
-            voxels([18, 7, 7], |[x, y, z]| x < 7 || x >= 11 || (2..5).contains(&y) && (2..5).contains(&z)).unwrap();
+            voxels([18, 7, 7], |[x, y, z]| !(7..11).contains(&x) || (2..5).contains(&y) && (2..5).contains(&z))
+                .unwrap();
         (surface, cells.into_iter().map(|p| p.map(f64::from)).collect())
     }
 
@@ -110,7 +111,8 @@ mod tests {
         let points: Vec<Vector> = points.into_iter().map(|p| p.map(f64::from)).collect();
         assert_eq!(Pieces::of(&block, &points).unwrap().pieces.len(), 1);
         // A frame has no two sides.
-        let (frame, points) = voxels([24, 24, 3], |[x, y, _]| x < 3 || x > 20 || y < 3 || y > 20).unwrap();
+        let (frame, points) =
+            voxels([24, 24, 3], |[x, y, _]| !(3..=20).contains(&x) || !(3..=20).contains(&y)).unwrap();
         let points: Vec<Vector> = points.into_iter().map(|p| p.map(f64::from)).collect();
         assert!(Pieces::of(&frame, &points).is_none());
     }
