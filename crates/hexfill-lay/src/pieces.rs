@@ -106,8 +106,8 @@ mod tests {
     }
 
     #[test]
-    fn spheres_without_limbs_and_other_surfaces_are_not_cut() {
-        let (block, points) = voxels([12, 12, 12], |_| true).unwrap();
+    fn small_spheres_and_other_surfaces_are_not_cut() {
+        let (block, points) = voxels([9, 9, 9], |_| true).unwrap();
         let points: Vec<Vector> = points.into_iter().map(|p| p.map(f64::from)).collect();
         assert_eq!(Pieces::of(&block, &points).unwrap().pieces.len(), 1);
         // A frame has no two sides.
