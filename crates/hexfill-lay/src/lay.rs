@@ -14,22 +14,50 @@ use hexfill_mesh::{Context, HexMesh, QuadSurface};
 use rayon::prelude::*;
 
 /// How far to go. Counts bound the work, not a clock.
+///
+/// | option | default |
+/// |---|---|
+/// | attempts | 4 at once |
+/// | batches of these | 2 |
+/// | most hexes | 14 a quad of the void |
+/// | sheets | 60 |
 #[derive(Clone, Copy, Debug)]
-#[non_exhaustive]
 pub struct LayOptions {
-    /// Meshes begun at once, each from another plan.
-    pub attempts: u64,
-    /// Times that many are begun, until one of them ends.
-    pub batches: u64,
-    /// Most hexes for each quad of the void while laying.
-    pub most: f64,
-    /// Sheets whose loss is tried at most, for each mesh.
-    pub sheets: u32,
+    attempts: u64,
+    batches: u64,
+    most: f64,
+    sheets: u32,
 }
 
 impl Default for LayOptions {
     fn default() -> Self {
         Self { attempts: 4, batches: 2, most: 14.0, sheets: 60 }
+    }
+}
+
+impl LayOptions {
+    /// Meshes begun at once, each from another plan; more on small surfaces.
+    #[must_use]
+    pub fn with_attempts(self, attempts: u64) -> Self {
+        Self { attempts, ..self }
+    }
+
+    /// Times that many are begun, until one of them ends.
+    #[must_use]
+    pub fn with_batches(self, batches: u64) -> Self {
+        Self { batches, ..self }
+    }
+
+    /// Most hexes for each quad of the void while laying.
+    #[must_use]
+    pub fn with_most(self, most: f64) -> Self {
+        Self { most, ..self }
+    }
+
+    /// Sheets whose loss is tried at most, for each mesh.
+    #[must_use]
+    pub fn with_sheets(self, sheets: u32) -> Self {
+        Self { sheets, ..self }
     }
 }
 

@@ -67,7 +67,7 @@ pub(crate) fn swept(surface: &QuadSurface, points: &[Vector], part: Part, ctx: &
 
 /// What a sweep behind a pillow leaves, if that is one void of not too many quads.
 fn left_open(surface: &QuadSurface, points: &[Vector], part: Part, seed: u64, ctx: &Context<'_>) -> Option<Swept> {
-    let options = SweepOptions { pillows: 1, seed, ..SweepOptions::default() };
+    let options = SweepOptions::default().with_pillows(1).with_seed(seed);
     let swept = sweep(surface, Some(points), &options, ctx);
     if swept.front.is_empty() && part == Part::Piece && ctx.stop().is_none() {
         return Some(swept);

@@ -44,7 +44,7 @@ fn filling(surface: &QuadSurface, number: usize, ctx: &Context<'_>) -> Option<Pl
 /// The hexes of a sweep and of stirring.
 fn swept(surface: &QuadSurface, number: u64, ctx: &Context<'_>) -> Option<Plan> {
     let mut front = Front::new(surface).ok()?;
-    let options = |seed| SweepOptions { seed, ..SweepOptions::default() };
+    let options = |seed| SweepOptions::default().with_seed(seed);
     sweep_front(&mut front, &options(number), ctx);
     for stirring in 1..=STIRRINGS {
         if front.n_quads() <= SMALL || ctx.stop().is_some() {

@@ -63,8 +63,7 @@ fn place_and_size_do_not_matter() {
     let (surface, points) = radial();
     let moved: Points =
         points.iter().map(|p| [0, 1, 2].map(|k: usize| 1e-4f64.mul_add(p[k], [5.0, -3.0, 0.25][k]))).collect();
-    let mut options = LayOptions::default();
-    options.batches = 1;
+    let options = LayOptions::default().with_batches(1);
     let made = lay(&surface, &moved, &options, &Context::default());
     assert_sound(&surface, &moved, &made[0]);
 }

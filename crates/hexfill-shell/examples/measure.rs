@@ -31,12 +31,12 @@ fn angles(surface: &QuadSurface, points: &[Vector]) -> HashMap<(u32, u32), f32> 
 
 fn main() {
     let mut options = SweepOptions::default();
-    let mut want = false;
+    let (mut want, mut seed) = (false, 0);
     for argument in std::env::args().skip(1) {
         let number = |text: &str| text.parse::<usize>().unwrap();
         let (surface, points) = match argument.split_once([':', '=']) {
             Some(("pillows", k)) => {
-                options.pillows = k.parse().unwrap();
+                options = options.with_pillows(k.parse().unwrap());
                 continue;
             }
             Some(("want", k)) => {
@@ -44,23 +44,24 @@ fn main() {
                 continue;
             }
             Some(("atlas", _)) => {
-                options.atlas = Some(hexfill_search::Atlas::embedded());
+                options = options.with_atlas(hexfill_search::Atlas::embedded());
                 continue;
             }
             Some(("stir", k)) => {
-                options.stir = k.parse().unwrap();
+                options = options.with_stir(k.parse().unwrap());
                 continue;
             }
             Some(("restarts", k)) => {
-                options.restarts = k.parse().unwrap();
+                options = options.with_restarts(k.parse().unwrap());
                 continue;
             }
             Some(("seed", k)) => {
-                options.seed = k.parse().unwrap();
+                seed = k.parse().unwrap();
+                options = options.with_seed(seed);
                 continue;
             }
             Some(("box", n)) => (voxel_surface([number(n); 3], |_| true).unwrap(), Vec::new()),
-            Some(("random", n)) => (random_sphere(number(n), options.seed).unwrap(), Vec::new()),
+            Some(("random", n)) => (random_sphere(number(n), seed).unwrap(), Vec::new()),
             Some(("pyramid", n)) => (refined(&schneiders_pyramid(), number(n) as u32).unwrap(), Vec::new()),
             Some(("spindle", n)) => (refined(&octagonal_spindle(), number(n) as u32).unwrap(), Vec::new()),
             _ => read(&argument),
@@ -68,7 +69,7 @@ fn main() {
         let crossings: usize = chords(&surface).iter().map(|c| c.self_crossings.len()).sum();
         let angles = if want && !points.is_empty() { angles(&surface, &points) } else { Default::default() };
         let edge_want = |a: u32, b: u32| angles.get(&(a.min(b), a.max(b))).copied().unwrap_or(2.0);
-        let options = SweepOptions { edge_want: if want { Some(&edge_want) } else { None }, ..options };
+        let options = if want { options.with_edge_want(&edge_want) } else { options };
         let start = std::time::Instant::now();
         let swept = sweep(&surface, Some(&points), &options, &Context::default());
         let time = start.elapsed().as_secs_f64();

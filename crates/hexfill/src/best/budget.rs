@@ -38,7 +38,7 @@ impl Effort {
             Self::Fast => {
                 // Shelling takes little of the time, embedding most of it.
                 shell = shell.with_candidates(1);
-                (lay.attempts, lay.batches) = (2, 1);
+                lay = lay.with_attempts(2).with_batches(1);
                 let most = 5;
                 Budget {
                     shell,
@@ -73,7 +73,7 @@ impl Effort {
                     .with_restarts(4 * normal.restarts())
                     .with_seeds(4 * normal.seeds())
                     .with_candidates(3 * normal.candidates());
-                (lay.attempts, lay.batches) = (16, 2);
+                lay = lay.with_attempts(16).with_batches(2);
                 Budget {
                     shell,
                     lay,
