@@ -11,9 +11,12 @@
 use crate::canonical::{Canonical, relabel};
 use crate::cavity::Cavity;
 use crate::flip::{apply, legal_flips};
-use crate::grow::{ClassHash, MAX_CAP, PackedPairs, class_hash, pack};
+use crate::grow::{ClassHash, PackedPairs, class_hash, pack};
 use crate::known::Known;
 use rustc_hash::FxHashSet;
+
+/// Most quads of a cavity on the way: each two more make the search several times as wide.
+const MOST_QUADS: usize = 26;
 
 /// How widely to search.
 #[derive(Clone, Copy, Debug)]
@@ -60,7 +63,7 @@ pub(crate) fn shorter_way(target: &Cavity, limit: u32, known: &Known, breadth: &
     for depth in 1..=breadth.depth {
         let mut inside: Vec<Inner> = Vec::new();
         for (cavity, from) in &beam {
-            for placement in legal_flips(cavity, MAX_CAP) {
+            for placement in legal_flips(cavity, MOST_QUADS) {
                 let cavity = apply(cavity, &placement).0;
                 canonical.compute(&cavity);
                 let class = class_hash(canonical.code());

@@ -14,7 +14,8 @@ use crate::exchange::smaller_filling;
 use crate::flip::Flip;
 use crate::grow::{ClassHash, class_hash};
 use crate::known::Known;
-use hexfill_mesh::{Context, StopReason, generate::all_spheres_up_to};
+use crate::narrow_shelling::narrow_shelling;
+use hexfill_mesh::{Context, HexMesh, StopReason, generate::all_spheres_up_to};
 use rayon::prelude::*;
 use rustc_hash::FxHashSet;
 
@@ -101,7 +102,7 @@ pub struct CompleteReport {
     pub targets: usize,
     /// How many of them the growth had reached.
     pub grown: usize,
-    /// How many the atlas to keep had, or had with fewer hexes.
+    /// How many the atlas to keep had or were given, or with fewer hexes.
     pub kept: usize,
     /// How many were found by searching backward.
     pub found: usize,
@@ -113,17 +114,32 @@ pub struct CompleteReport {
     pub stop: StopReason,
 }
 
+/// A filling from elsewhere, as an atlas holds it.
+#[derive(Clone, Debug)]
+pub struct GivenFilling {
+    flips: Vec<Flip>,
+}
+
+impl GivenFilling {
+    /// The filling that a mesh is, a proper ball. `None` if it has more than 128 hexes, or no order of them was found whose parts have boundaries of at most
+    /// [`MAX_CAP`](crate::MAX_CAP) quads.
+    pub fn of_mesh(mesh: &HexMesh) -> Option<Self> {
+        narrow_shelling(mesh).map(|flips| Self { flips })
+    }
+}
+
 /// A class to fill.
 struct Target {
     sphere: Cavity,
     class: ClassHash,
 }
 
-/// A packed atlas of one filling a class: of all classes of at most `max_quads` quads, as far as they were found, and of all that
+/// A packed atlas of one filling a class: of all classes of at most `max_quads` quads, as far as they were found or `given`, and of all that
 /// `kept` names, which get no more hexes than there. `None` if one of the two is no atlas of this version.
 pub fn complete(
     grown: &Atlas,
     kept: &Atlas,
+    given: &[GivenFilling],
     options: &CompleteOptions,
     ctx: &Context<'_>,
 ) -> Option<(Atlas, CompleteReport)> {
@@ -134,6 +150,9 @@ pub fn complete(
     known.merge(&Known::from_atlas(kept)?)?;
     // What the old atlas knew counts as known and not as found, and its classes keep at most the hexes they had: an
     // atlas never gets worse.
+    for filling in given {
+        known.add_ball(&filling.flips)?;
+    }
     let with_kept = fewest(&known);
     let gained = before.iter().zip(&with_kept).filter(|(before, now)| before != now).count();
     let mut report = CompleteReport {
@@ -246,7 +265,7 @@ mod tests {
         let options = CompleteOptions { max_quads: 12, max_hexes: 56, efforts: 2, rounds: 1 };
         let run = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| complete(&grown, &kept, &options, &Context::default()).unwrap())
+            pool.install(|| complete(&grown, &kept, &[], &options, &Context::default()).unwrap())
         };
         let (atlas, report) = run(1);
         assert_eq!((report.targets, report.missing), (16, 0), "{report:?}");

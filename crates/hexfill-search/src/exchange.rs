@@ -9,13 +9,15 @@
 use crate::atlas::Atlas;
 use crate::cavity::Cavity;
 use crate::flip::Flip;
-use crate::grow::{ClassHash, MAX_CAP};
+use crate::grow::ClassHash;
 use crate::inward::{FillOptions, fill_from_atlas};
 use crate::known::Known;
 use crate::narrow_shelling::narrow_shelling;
 use crate::simplify::{Collapse, SimplifyOptions, simplify};
 use hexfill_mesh::{Context, HexMesh};
 
+/// Most quads of a ball.
+const BALL_QUADS: usize = 26;
 /// Cavities looked at for a first filling.
 const CAVITIES: u64 = 300_000;
 
@@ -35,7 +37,7 @@ pub(crate) fn smaller_filling(
         Some(ball) => HexMesh::try_new(ball.n_vertices as usize, &ball.hexes).ok()?,
         None => any_filling(sphere, atlas, &ctx)?,
     };
-    let options = SimplifyOptions::default().with_max_quads(MAX_CAP);
+    let options = SimplifyOptions::default().with_max_quads(BALL_QUADS);
     let made = simplify(&mesh, atlas, &options.with_balls(balls).with_collapse(Collapse::Nothing), &ctx);
     if made.report.after >= limit as usize {
         return None;

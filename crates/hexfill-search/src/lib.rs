@@ -54,7 +54,7 @@ pub use atlas::{Atlas, AtlasStats, ClassStats, Spread};
 pub use atlas_file::{AtlasError, GrowthLog};
 pub use ball::Ball;
 pub use cavity::{Cavity, MAX_QUADS, MAX_VERTICES, Pairs};
-pub use complete::{CompleteOptions, CompleteReport, complete};
+pub use complete::{CompleteOptions, CompleteReport, GivenFilling, complete};
 pub use flip::{Flip, FlipKind, Placement, apply, is_legal, legal_flips, place};
 pub use grow::{GrowOptions, Growth, LevelReport, MAX_CAP};
 pub use inward::{FillOptions, FillOutcome, Filling, fill_avoiding, fill_from_atlas};

@@ -1,11 +1,12 @@
 //! `hexfill atlas build|complete|stats|lookup|prune`.
 
+use crate::commands::families::is_exact_ball;
 use crate::console::Console;
 use crate::exit::Exit;
-use crate::files;
-use anyhow::bail;
+use crate::files::{self, InputArgs};
+use anyhow::{Context as _, bail, ensure};
 use hexfill::unstable::search::{
-    Atlas, Cavity, CompleteOptions, GrowOptions, GrowthLog, MAX_CAP, MAX_QUADS, Spread, complete,
+    Atlas, Cavity, CompleteOptions, GivenFilling, GrowOptions, GrowthLog, MAX_CAP, MAX_QUADS, Spread, complete,
 };
 use hexfill::{Context, StopReason};
 use serde::Serialize;
@@ -70,6 +71,9 @@ enum AtlasCommand {
         /// The classes of this atlas stay, with no more hexes than there [default: the embedded one].
         #[arg(long, value_name = "FILE")]
         keep: Option<PathBuf>,
+        /// Fillings from elsewhere: hex meshes, each a proper ball of at most 128 hexes.
+        #[arg(long, value_name = "MESH", num_args = 1..)]
+        given: Vec<String>,
     },
     /// Count what an atlas holds.
     Stats {
@@ -129,8 +133,21 @@ pub(crate) fn run(args: &AtlasArgs, console: &Console, ctx: &Context<'_>) -> any
                 ctx,
             )
         }
-        AtlasCommand::Complete { file, output, cap, levels, beam, max_quads, max_hexes, efforts, rounds, keep } => {
+        AtlasCommand::Complete {
+            file,
+            output,
+            cap,
+            levels,
+            beam,
+            max_quads,
+            max_hexes,
+            efforts,
+            rounds,
+            keep,
+            given,
+        } => {
             files::check_folder(output)?;
+            let given = given.iter().map(|path| given_filling(path, ctx)).collect::<anyhow::Result<Vec<_>>>()?;
             files::check_distinct(&[&file.to_string_lossy(), output])?;
             let grown =
                 build(file, GrowOptions::default().with_cap(*cap as usize), Some(*beam), *levels, console, ctx)?;
@@ -142,7 +159,7 @@ pub(crate) fn run(args: &AtlasArgs, console: &Console, ctx: &Context<'_>) -> any
                 .with_max_hexes(*max_hexes)
                 .with_efforts(*efforts)
                 .with_rounds(*rounds);
-            complete_atlas(file, output, keep.as_deref(), &options, console, ctx)
+            complete_atlas(file, output, keep.as_deref(), &given, &options, console, ctx)
         }
         AtlasCommand::Stats { file } => {
             let read;
@@ -195,17 +212,29 @@ struct CompletionReport {
     stopped: Option<StopReason>,
 }
 
+/// The filling that a mesh file holds.
+fn given_filling(path: &str, ctx: &Context<'_>) -> anyhow::Result<GivenFilling> {
+    let data = files::read_data(path, &InputArgs::default())?;
+    let mesh = data.hex_mesh()?;
+    let is_ball = hexfill::with_judged(&data, None, |judged| is_exact_ball(judged, ctx));
+    ensure!(is_ball, "{path} is no proper ball of hexes; see `hexfill check {path}`");
+    GivenFilling::of_mesh(&mesh).with_context(|| {
+        format!("{path}: no order of its {} hexes was found (at most 128) whose parts all have at most {MAX_CAP} boundary quads; simplify it", mesh.n_hexes())
+    })
+}
+
 fn complete_atlas(
     file: &Path,
     output: &str,
     keep: Option<&Path>,
+    given: &[GivenFilling],
     options: &CompleteOptions,
     console: &Console,
     ctx: &Context<'_>,
 ) -> anyhow::Result<Exit> {
     let kept = keep.map(Atlas::read_path).transpose()?;
     let kept = kept.as_ref().unwrap_or_else(|| Atlas::embedded());
-    let Some((atlas, done)) = complete(&Atlas::read_path(file)?, kept, options, ctx) else {
+    let Some((atlas, done)) = complete(&Atlas::read_path(file)?, kept, given, options, ctx) else {
         bail!("{} holds flips that are not legal; delete it and build it again", file.display());
     };
     files::write_file(output, |out| atlas.write_packed(out))?;
