@@ -28,9 +28,9 @@ impl Numbers {
         if self.count == 0 {
             self.first = number;
         }
-        if self.map.is_none() && number != self.first.wrapping_add(i64::from(self.count)) {
+        if self.map.is_none() && self.first.checked_add(i64::from(self.count)) != Some(number) {
             let first = self.first;
-            self.map = Some((0..self.count).map(|i| (first.wrapping_add(i64::from(i)), i)).collect());
+            self.map = Some((0..self.count).map(|i| (first + i64::from(i), i)).collect());
         }
         let known = self.map.as_mut().is_some_and(|map| map.insert(number, self.count).is_some());
         self.count += 1;
@@ -120,6 +120,17 @@ fn completed(values: &[f64], most: u64) -> Option<Vec<u64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn numbers_at_the_end_of_the_range_do_not_go_round() {
+        let mut numbers = Numbers::default();
+        assert!(numbers.push(i64::MAX - 1) && numbers.push(i64::MAX) && numbers.push(i64::MIN));
+        assert!(!numbers.push(i64::MAX));
+        assert_eq!([i64::MAX - 1, i64::MIN, 0].map(|n| numbers.get(n)), [Some(0), Some(2), None]);
+        let mut mesh = MeshData { points: vec![[0.0; 3]; 4], ..MeshData::default() };
+        numbers.keep(&mut mesh);
+        assert!(!NodeNumbers::new(&mesh, u64::MAX).are_given());
+    }
 
     #[test]
     fn new_points_are_numbered_after_the_largest() {

@@ -8,6 +8,7 @@
 
 use crate::data::MeshData;
 use crate::error::QuadraticError;
+use crate::numbers::NODE;
 use crate::orders::{HEX_EDGES, QUAD_EDGES};
 use crate::quadratic_cells::Quadratic;
 use rustc_hash::FxHashMap;
@@ -49,9 +50,11 @@ impl MeshData {
             let (a, b) = (points[a as usize], points[b as usize]);
             points.push(std::array::from_fn(|k| f64::midpoint(a[k], b[k])));
         }
-        for (_, values) in &mut self.point_data {
+        for (name, values) in &mut self.point_data {
+            // The mean of two numbers of nodes is none.
+            let mean = |a: f64, b: f64| if name == NODE { f64::NAN } else { f64::midpoint(a, b) };
             for &[a, b] in &ends {
-                values.push(f64::midpoint(values[a as usize], values[b as usize]));
+                values.push(mean(values[a as usize], values[b as usize]));
             }
         }
         if let Some(tags) = &mut self.point_tags {

@@ -121,7 +121,7 @@ pub struct GivenFilling {
 }
 
 impl GivenFilling {
-    /// The filling that a mesh is, a proper ball. `None` if it has more than 128 hexes, or no order of them was found whose parts have boundaries of at most
+    /// The filling that a mesh is, a proper ball. `None` if it has more than 255 hexes, or no order of them was found whose parts have boundaries of at most
     /// [`MAX_CAP`](crate::MAX_CAP) quads.
     pub fn of_mesh(mesh: &HexMesh) -> Option<Self> {
         narrow_shelling(mesh).map(|flips| Self { flips })

@@ -18,20 +18,44 @@ use rustc_hash::FxHashSet;
 /// Sets of hexes kept on each level, one effort after the other.
 const BEAMS: [usize; 3] = [30, 300, 3_000];
 
+/// Most hexes of a ball: an atlas counts them in a byte.
+pub(crate) const MOST_HEXES: usize = 255;
+
+/// Some of the hexes.
+#[derive(Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+struct Set([u128; 2]);
+
+impl Set {
+    fn has(self, hex: u32) -> bool {
+        self.0[hex as usize / 128] >> (hex % 128) & 1 == 1
+    }
+
+    fn with(mut self, hex: u32) -> Self {
+        self.0[hex as usize / 128] |= 1 << (hex % 128);
+        self
+    }
+
+    /// A number that favours no hex.
+    fn stirred(self) -> u128 {
+        let [low, high] = self.0;
+        (low ^ high.rotate_left(64)).wrapping_mul(0x9E37_79B9_7F4A_7C15_F39C_C060_5CED_C835)
+    }
+}
+
 /// A ball of some of the hexes.
 #[derive(Clone, Copy)]
 struct Part {
     /// Hex `h` is bit `h`.
-    set: u128,
+    set: Set,
     quads: usize,
     /// The hex that joined last, and the entry of the trail with the one before.
     last: u32,
     before: u32,
 }
 
-/// The flips that shell a ball of at most 128 hexes from one of them, no boundary on the way with more than [`MAX_CAP`] quads.
+/// The flips that shell a ball of at most [`MOST_HEXES`] hexes from one of them, no boundary on the way with more than [`MAX_CAP`] quads.
 pub(crate) fn narrow_shelling(mesh: &HexMesh) -> Option<Vec<Flip>> {
-    if mesh.n_hexes() > 128 {
+    if mesh.n_hexes() > MOST_HEXES {
         return None;
     }
     let live = LiveMesh::new(mesh);
@@ -42,7 +66,7 @@ pub(crate) fn narrow_shelling(mesh: &HexMesh) -> Option<Vec<Flip>> {
 /// An order of the hexes in which each part is a ball with a small boundary.
 fn narrow_order(live: &LiveMesh, beam: usize) -> Option<Vec<u32>> {
     let n = live.n_hexes() as u32;
-    let start = |h: u32| Part { set: 1 << h, quads: 6, last: h, before: u32::MAX };
+    let start = |h: u32| Part { set: Set::default().with(h), quads: 6, last: h, before: u32::MAX };
     let mut parts: Vec<Part> = (0..n).map(start).collect();
     let mut trail: Vec<(u32, u32)> = Vec::new();
     let mut region = Region::new();
@@ -50,12 +74,12 @@ fn narrow_order(live: &LiveMesh, beam: usize) -> Option<Vec<u32>> {
         let mut next: Vec<Part> = Vec::new();
         let mut seen = FxHashSet::default();
         for part in &parts {
-            let mut members = (0..n).filter(|h| part.set >> h & 1 == 1);
+            let mut members = (0..n).filter(|h| part.set.has(*h));
             region.start(live, members.next()?);
             members.for_each(|h| region.join(live, h));
             trail.push((part.last, part.before));
             for candidate in region.candidates(live, MAX_CAP) {
-                let set = part.set | 1 << candidate.hex;
+                let set = part.set.with(candidate.hex);
                 if seen.insert(set) {
                     let quads = part.quads + 6 - 2 * candidate.shared as usize;
                     next.push(Part { set, quads, last: candidate.hex, before: trail.len() as u32 - 1 });
@@ -63,7 +87,7 @@ fn narrow_order(live: &LiveMesh, beam: usize) -> Option<Vec<u32>> {
             }
         }
         // Sets with as many quads in an order that favours no hex.
-        next.sort_unstable_by_key(|p| (p.quads, p.set.wrapping_mul(0x9E37_79B9_7F4A_7C15_F39C_C060_5CED_C835), p.set));
+        next.sort_unstable_by_key(|p| (p.quads, p.set.stirred(), p.set));
         next.truncate(beam);
         parts = next;
     }

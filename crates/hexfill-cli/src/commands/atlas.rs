@@ -71,7 +71,7 @@ enum AtlasCommand {
         /// The classes of this atlas stay, with no more hexes than there [default: the embedded one].
         #[arg(long, value_name = "FILE")]
         keep: Option<PathBuf>,
-        /// Fillings from elsewhere: hex meshes, each a proper ball of at most 128 hexes.
+        /// Fillings from elsewhere: hex meshes, each a proper ball of at most 255 hexes.
         #[arg(long, value_name = "MESH", num_args = 1..)]
         given: Vec<String>,
     },
@@ -219,7 +219,7 @@ fn given_filling(path: &str, ctx: &Context<'_>) -> anyhow::Result<GivenFilling> 
     let is_ball = hexfill::with_judged(&data, None, |judged| is_exact_ball(judged, ctx));
     ensure!(is_ball, "{path} is no proper ball of hexes; see `hexfill check {path}`");
     GivenFilling::of_mesh(&mesh).with_context(|| {
-        format!("{path}: no order of its {} hexes was found (at most 128) whose parts all have at most {MAX_CAP} boundary quads; simplify it", mesh.n_hexes())
+        format!("{path}: no order of its {} hexes was found (at most 255) whose parts all have at most {MAX_CAP} boundary quads; simplify it", mesh.n_hexes())
     })
 }
 

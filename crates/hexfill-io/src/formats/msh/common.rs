@@ -51,9 +51,6 @@ pub(crate) fn straight(element_type: i64) -> (i64, usize) {
     }
 }
 
-/// The largest number of a node: whole numbers up to here are the same in floating point, as data on points.
-pub(crate) const MOST: u64 = 1 << 53;
-
 /// A file being read.
 pub(crate) struct Reader<'r> {
     pub(crate) s: Source<'r>,

@@ -2,7 +2,7 @@
 //!
 //! Source: the Gmsh manual, "MSH file format version 2".
 
-use super::common::{MOST, Reader, dimension, elements, nodes_of, write_nodes};
+use super::common::{Reader, dimension, elements, nodes_of, write_nodes};
 use super::physical::Physical;
 use super::sections::{Layout, write_data};
 use crate::data::MeshData;
@@ -154,6 +154,9 @@ fn read_binary_elements(r: &mut Reader<'_>, n: u64, reversed: bool) -> Result<()
     }
     Ok(())
 }
+
+/// The largest number of a node: Gmsh reads them as `int`.
+const MOST: u64 = 2_147_483_647;
 
 pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
     writeln!(out, "$MeshFormat\n2.2 0 8\n$EndMeshFormat")?;

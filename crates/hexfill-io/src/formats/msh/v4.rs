@@ -2,7 +2,7 @@
 //!
 //! Source: the Gmsh manual, "MSH file format".
 
-use super::common::{MOST, Reader, dimension, elements, nodes_of, write_nodes};
+use super::common::{Reader, dimension, elements, nodes_of, write_nodes};
 use super::physical::Physical;
 use super::sections::{Layout, write_data};
 use crate::data::MeshData;
@@ -213,6 +213,9 @@ fn read_elements(r: &mut Reader<'_>, groups: &Groups) -> Result<(), ReadError> {
     }
     r.close("Elements")
 }
+
+/// The largest number of a node: whole numbers up to here are the same in floating point, as data on points.
+const MOST: u64 = 1 << 53;
 
 pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
     writeln!(out, "$MeshFormat\n4.1 0 8\n$EndMeshFormat")?;
