@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 /// Fills that take many seconds: a small sphere the atlas holds, spikes it does not hold, and a file of the corpus.
 fn slow_surfaces(dir: &Path) -> Vec<String> {
-    std::fs::write(dir.join("spikes.obj"), spikes(5)).unwrap();
+    std::fs::write(dir.join("spikes.obj"), spikes(9)).unwrap();
     vec![":buffer-cube-20".to_owned(), "spikes.obj".to_owned(), corpus("radial_12.obj")]
 }
 
@@ -111,7 +111,7 @@ fn a_signal_ends_with_a_mesh_and_exit_code_3() {
 fn stopped_without_a_mesh_nothing_is_written() {
     let dir = tempfile::tempdir().unwrap();
     let at = dir.path();
-    std::fs::write(at.join("spikes.obj"), spikes(5)).unwrap();
+    std::fs::write(at.join("spikes.obj"), spikes(9)).unwrap();
     for more in [&["--strategy", "shell"][..], &["--max-hexes", "20"], &["--require-valid"]] {
         let args = [&["fill", "spikes.obj", "-o", "m.vtk", "--time-limit", "1ms", "--json"], more].concat();
         let (code, out, err) = hexfill(at, &args);

@@ -9,6 +9,7 @@ use crate::laying::{Laying, Underway};
 use crate::open_mesh::{OpenMesh, Part, swept};
 use crate::patch::Patch;
 use crate::pieces::Pieces;
+use hexfill_embed::untangle_near;
 use hexfill_geometry::Vector;
 use hexfill_mesh::{Context, HexMesh, QuadSurface};
 use rayon::prelude::*;
@@ -36,13 +37,13 @@ impl Default for LayOptions {
 }
 
 impl LayOptions {
-    /// Meshes begun at once, each from another plan; more on small surfaces.
+    /// Meshes begun at once, each from another plan; on surfaces of fewer than 600 quads round after round, as often as they go into 600.
     #[must_use]
     pub fn with_attempts(self, attempts: u64) -> Self {
         Self { attempts, ..self }
     }
 
-    /// Times that many are begun, until one of them ends.
+    /// Times all these rounds are begun, until one attempt comes to its end.
     #[must_use]
     pub fn with_batches(self, batches: u64) -> Self {
         Self { batches, ..self }
@@ -61,12 +62,14 @@ impl LayOptions {
     }
 }
 
-/// On surfaces of fewer quads more meshes are begun, about as many more as it is smaller.
-const SMALL: u64 = 150;
-/// Meshes from which sheets are taken.
+/// On surfaces of fewer quads more meshes are begun, about as many more as it is smaller: what fills a void is a matter of luck, and a small one costs little.
+const SMALL: u64 = 600;
+/// Meshes from which sheets are taken: those with fewest hexes. An attempt that has more is given up.
 const KEPT: usize = 6;
 /// On surfaces of more quads only the one with fewest invalid hexes, then fewest hexes is given, as embedding another takes too long.
 const LARGE: usize = 500;
+/// Rings of vertices that are free round what is mended once pieces are joined.
+const MENDED_RINGS: usize = 2;
 /// Plans for one mesh: a jam that pillows do not clear asks for another.
 const PLANS: u64 = 12;
 
@@ -89,8 +92,21 @@ fn in_pieces(surface: &QuadSurface, points: &[Vector], options: &LayOptions, ctx
         meshes.into_iter().next()
     });
     let mut laid = pieces.joined(surface, laid.collect::<Option<_>>()?)?;
+    if laid.invalid > 0 {
+        mend(&mut laid, ctx);
+    }
     laid.points[..points.len()].copy_from_slice(points);
     Some(laid)
+}
+
+/// Untangles what is not valid in the mesh of all pieces: the membranes, which stayed while the pieces were laid, may move now.
+fn mend(laid: &mut LaidMesh, ctx: &Context<'_>) {
+    let quiet = Context { progress: None, ..*ctx };
+    if let Ok((points, bad)) = untangle_near(&laid.mesh, &laid.points, MENDED_RINGS, 0, &quiet)
+        && bad.len() < laid.invalid
+    {
+        (laid.points, laid.invalid) = (points, bad.len());
+    }
 }
 
 /// [`lay`] without a cut, at most `most` meshes. Of several that are kept the one of fewest hexes comes first, a single one is that with fewest invalid hexes.
@@ -108,24 +124,27 @@ fn lay_whole(
     if open.is_empty() {
         return Vec::new();
     }
-    let attempts = options.attempts * (SMALL / surface.n_quads().max(1) as u64).max(1);
+    let rounds = (SMALL / surface.n_quads().max(1) as u64).max(1);
     for batch in 0..options.batches {
-        let numbers = batch * attempts..(batch + 1) * attempts;
-        let mut filled: Vec<Filled<'_>> = numbers
-            .into_par_iter()
-            .filter_map(|number| {
-                let open = &open[number as usize % open.len()];
+        let mut filled: Vec<Filled<'_>> = Vec::new();
+        for round in batch * rounds..(batch + 1) * rounds {
+            // As many at once as asked for, and not more: what a round finds bounds the next one, for any number of threads.
+            let most = filled.get(KEPT - 1).map_or(usize::MAX, |last| last.n_hexes() - 1);
+            let numbers = round * options.attempts..(round + 1) * options.attempts;
+            let begun = numbers.into_par_iter().filter_map(|number| {
                 // Of several at once one speaks.
-                let quiet = if number == batch * attempts { *ctx } else { Context { progress: None, ..*ctx } };
-                Filled::new(open, number, options.most, &quiet)
-            })
-            .collect();
+                let quiet = if number % options.attempts == 0 { *ctx } else { Context { progress: None, ..*ctx } };
+                Filled::new(&open[number as usize % open.len()], number, options.most, most, &quiet)
+            });
+            filled.extend(begun.collect::<Vec<_>>());
+            // Stable: among equals the first attempt.
+            filled.sort_by_key(Filled::n_hexes);
+            filled.dedup_by(|a, b| a.is_same(b));
+            filled.truncate(KEPT);
+        }
         if filled.is_empty() && ctx.stop().is_none() {
             continue;
         }
-        // Stable: among equals the first attempt.
-        filled.sort_by_key(Filled::n_hexes);
-        filled.truncate(KEPT);
         let mut laid: Vec<LaidMesh> =
             filled.into_par_iter().filter_map(|filled| filled.whole(options.sheets, part, ctx)).collect();
         laid.sort_by_key(|laid| laid.mesh.n_hexes());
@@ -151,10 +170,11 @@ struct Filled<'a> {
 }
 
 impl<'a> Filled<'a> {
-    /// Fills the void by the plans of that number, with at most so many hexes for each of its quads.
-    fn new(open: &'a OpenMesh, number: u64, most: f64, ctx: &Context<'_>) -> Option<Self> {
+    /// Fills the void by the plans of that number, with at most so many hexes for each of its quads, and so many in all.
+    fn new(open: &'a OpenMesh, number: u64, a_quad: f64, in_all: usize, ctx: &Context<'_>) -> Option<Self> {
         let patch = Patch::round(open);
-        let most = patch.n_hexes() + (most * open.front.len() as f64) as usize;
+        let most = (patch.n_hexes() + (a_quad * open.front.len() as f64) as usize)
+            .min(in_all.saturating_add(patch.n_hexes()).saturating_sub(open.hexes.len()));
         let Laying { open: full, pillows, .. } =
             to_the_end(Laying::new(patch.cut_out(open)), ctx.seed + number, most, ctx)?;
         let mesh = HexMesh::try_new(full.points.len(), &full.hexes).ok()?;
@@ -166,6 +186,11 @@ impl<'a> Filled<'a> {
 
     fn n_hexes(&self) -> usize {
         self.open.hexes.len() - self.patch.n_hexes() + self.laid.mesh.n_hexes()
+    }
+
+    /// Whether both came out alike: from the same void by the same hexes.
+    fn is_same(&self, other: &Self) -> bool {
+        std::ptr::eq(self.open, other.open) && self.laid.mesh == other.laid.mesh
     }
 
     /// The whole mesh, without sheets it can do without near the void.
@@ -187,7 +212,7 @@ fn to_the_end(mut laying: Laying, seed: u64, most: usize, ctx: &Context<'_>) -> 
     // Pillows since the last hex; a new plan begins right behind one.
     let mut jams = 1;
     while !laying.open.front.is_empty() {
-        if ctx.stop().is_some() || laying.open.hexes.len() > most {
+        if ctx.stop().is_some() || laying.open.hexes.len() + fewest(&laying) > most {
             return None;
         }
         ctx.report("laying", laying.open.hexes.len() as u64, None, || {
@@ -199,6 +224,9 @@ fn to_the_end(mut laying: Laying, seed: u64, most: usize, ctx: &Context<'_>) -> 
             continue;
         }
         if jams == 0 || jams == 1 && !underway.is_over() {
+            if laying.open.hexes.len() + laying.open.front.len() + fewest(&laying) > most {
+                return None;
+            }
             laying.pillow(&mut underway.ids, ctx);
             jams += 1;
         }
@@ -208,6 +236,11 @@ fn to_the_end(mut laying: Laying, seed: u64, most: usize, ctx: &Context<'_>) -> 
         }
     }
     Some(laying)
+}
+
+/// Hexes that what is open takes at the least: put together one by one, they have four quads more each, after the first six.
+fn fewest(laying: &Laying) -> usize {
+    laying.open.front.len().saturating_sub(2).div_ceil(4)
 }
 
 /// The next plan for a front behind a pillow; `None` after too many.

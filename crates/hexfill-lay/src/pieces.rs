@@ -11,8 +11,6 @@ use hexfill_shell::Front;
 
 /// Spheres of at most so many quads are not cut.
 const WHOLE: usize = 500;
-/// Nor are surfaces of more quads: one of 2,398 in 15 pieces took more than 460 s of processor time, while it is constructed in a third of that.
-const MOST_CUT: usize = 1500;
 /// Waists tried for one cut.
 const TRIED: usize = 6;
 
@@ -25,9 +23,9 @@ pub(crate) struct Pieces {
 }
 
 impl Pieces {
-    /// The sphere cut wherever it is narrow; one piece where it is not. `None` for other surfaces, and for the largest.
+    /// The sphere cut wherever it is narrow; one piece where it is not. `None` for other surfaces.
     pub(crate) fn of(surface: &QuadSurface, points: &[Vector]) -> Option<Self> {
-        if !surface.is_sphere() || surface.n_quads() > MOST_CUT {
+        if !surface.is_sphere() {
             return None;
         }
         let mut points = points.to_vec();

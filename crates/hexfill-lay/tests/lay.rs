@@ -35,14 +35,16 @@ fn assert_judged(surface: &QuadSurface, points: &[[f64; 3]], laid: &LaidMesh) {
 fn a_surface_that_no_sweep_embeds_gets_valid_meshes_of_few_hexes() {
     let (surface, points) = radial();
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-    let made = one.install(|| lay(&surface, &points, &LayOptions::default(), &Context::default()));
+    // Two at once in twenty rounds.
+    let options = LayOptions::default().with_attempts(2).with_batches(1);
+    let made = one.install(|| lay(&surface, &points, &options, &Context::default()));
     assert!(made[0].mesh.n_hexes() <= 5 * surface.n_quads(), "{}", made[0].mesh.n_hexes());
     for laid in &made {
         assert_sound(&surface, &points, laid);
     }
     // The same for any number of threads.
     let three = rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap();
-    let again = three.install(|| lay(&surface, &points, &LayOptions::default(), &Context::default()));
+    let again = three.install(|| lay(&surface, &points, &options, &Context::default()));
     assert_eq!(made.len(), again.len());
     assert!(made.iter().zip(&again).all(|(a, b)| a.mesh == b.mesh && a.points == b.points));
 }
@@ -63,7 +65,7 @@ fn place_and_size_do_not_matter() {
     let (surface, points) = radial();
     let moved: Points =
         points.iter().map(|p| [0, 1, 2].map(|k: usize| 1e-4f64.mul_add(p[k], [5.0, -3.0, 0.25][k]))).collect();
-    let options = LayOptions::default().with_batches(1);
+    let options = LayOptions::default().with_attempts(1).with_batches(1);
     let made = lay(&surface, &moved, &options, &Context::default());
     assert_sound(&surface, &moved, &made[0]);
 }
