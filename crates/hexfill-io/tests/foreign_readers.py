@@ -284,6 +284,8 @@ def check(directory):
                 # Other tags: the names are looked at.
                 found.quad_tags = found.hex_tags = found.point_tags = None
                 compare_names(path, reader)
+            if path.name.startswith("numbered-"):
+                compare_numbers(path, reader, due)
             if path.name.startswith("partly-"):
                 found.quad_tags = found.hex_tags = None
             has_hexes = "-surface" not in path.name and not surface_format
@@ -393,6 +395,20 @@ def compare_views(path):
             values = [got[n] for n in sorted(int(n) for n in elements)]
             assert all(set(v) == {d} for v, d in zip(values, due)), (path, name, values)
         assert found["flux"][3] == 3 and found["shift"][3] == 3, path
+    finally:
+        gmsh.finalize()
+
+
+def compare_numbers(path, reader, due):
+    """The numbers of nodes as Gmsh sees them; meshio has no place for them."""
+    if reader is not by_gmsh:
+        return
+    gmsh_open(path)
+    try:
+        numbers, coordinates, _ = gmsh.model.mesh.getNodes()
+        found = {int(n): p for n, p in zip(numbers, np.reshape(coordinates, (-1, 3)))}
+        assert set(found) == {7 + 13 * i for i in range(12)}, (path, set(found))
+        assert all(np.abs(found[7 + 13 * (5 * i % 12)] - p).max() <= 1e-11 for i, p in enumerate(due.points)), (path, found)
     finally:
         gmsh.finalize()
 

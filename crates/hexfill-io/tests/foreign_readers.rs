@@ -73,6 +73,14 @@ fn write_all(directory: &Path) {
             partly.quad_tags.iter_mut().flatten().filter(|t| **t == 1).for_each(|t| *t = 0);
             let path = directory.join(format!("partly-{format}{binary}.{extension}"));
             write_path_with(&path, Some(format), &partly, encoding).unwrap();
+            // With numbers of nodes that neither ascend nor follow each other.
+            if matches!(format, Format::Inp | Format::Nastran | Format::Unv | Format::Msh22 | Format::Msh41) {
+                let mut numbered = common::chiral_for(format);
+                let numbers = (0..12).map(|i| f64::from(7 + 13 * (5 * i % 12))).collect();
+                numbered.point_data.push(("node".to_owned(), numbers));
+                let path = directory.join(format!("numbered-{format}{binary}.{extension}"));
+                write_path_with(&path, Some(format), &numbered, encoding).unwrap();
+            }
         }
     }
 }

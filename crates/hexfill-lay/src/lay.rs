@@ -124,7 +124,8 @@ fn lay_whole(
     if open.is_empty() {
         return Vec::new();
     }
-    let rounds = (SMALL / surface.n_quads().max(1) as u64).max(1);
+    // A piece is one of many, and hexes saved there are few of all.
+    let rounds = if part == Part::Piece { 1 } else { (SMALL / surface.n_quads().max(1) as u64).max(1) };
     for batch in 0..options.batches {
         let mut filled: Vec<Filled<'_>> = Vec::new();
         for round in batch * rounds..(batch + 1) * rounds {

@@ -217,24 +217,46 @@ fn read_elements(r: &mut Reader<'_>, groups: &Groups) -> Result<(), ReadError> {
 /// The largest number of a node: whole numbers up to here are the same in floating point, as data on points.
 const MOST: u64 = 1 << 53;
 
+/// One entity for each tag of each dimension, numbered from 1 in each dimension.
+struct Entities {
+    numbers: BTreeMap<(u8, i64), usize>,
+    /// How many there are of each dimension.
+    count: [usize; 4],
+    /// The dimension of the entity on which all nodes stand: the first of the highest dimension.
+    home: u8,
+}
+
+impl Entities {
+    fn new(data: &MeshData) -> Self {
+        let mut numbers: BTreeMap<(u8, i64), usize> =
+            elements(data).map(|(element_type, _, tag)| ((dimension(element_type), tag), 0)).collect();
+        let mut count = [0usize; 4];
+        for ((dim, _), entity) in &mut numbers {
+            count[usize::from(*dim)] += 1;
+            *entity = count[usize::from(*dim)];
+        }
+        let home = if count[3] > 0 || count[2] == 0 { 3 } else { 2 };
+        if count[2] + count[3] == 0 {
+            count[3] = 1;
+            numbers.insert((3, 0), 1);
+        }
+        Self { numbers, count, home }
+    }
+}
+
 pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
     writeln!(out, "$MeshFormat\n4.1 0 8\n$EndMeshFormat")?;
     let physical = Physical::new(data, true, true);
     physical.write_names(out)?;
-    // One entity for each tag of each dimension, numbered from 1 in each dimension.
-    let mut entities: BTreeMap<(u8, i64), usize> =
-        elements(data).map(|(element_type, _, tag)| ((dimension(element_type), tag), 0)).collect();
-    let mut last = [0usize; 4];
-    for ((dim, _), entity) in &mut entities {
-        last[usize::from(*dim)] += 1;
-        *entity = last[usize::from(*dim)];
-    }
-    // All nodes stand on the first entity of the highest dimension.
-    let home = if last[3] > 0 || last[2] == 0 { 3 } else { 2 };
-    if last[2] + last[3] == 0 {
-        last[3] = 1;
-        entities.insert((3, 0), 1);
-    }
+    let entities = Entities::new(data);
+    write_entities(out, data, &physical, &entities)?;
+    let numbers = NodeNumbers::new(data, MOST);
+    write_all_nodes(out, data, &numbers, entities.home)?;
+    write_elements(out, data, &numbers, &entities)?;
+    write_data(out, data, &numbers, Layout::Elements)
+}
+
+fn write_entities(out: &mut dyn Write, data: &MeshData, physical: &Physical, entities: &Entities) -> io::Result<()> {
     let mut low = [0.0f64; 3];
     let mut high = [0.0f64; 3];
     if let Some(first) = data.points.first() {
@@ -246,8 +268,8 @@ pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
             high[axis] = high[axis].max(point[axis]);
         }
     }
-    writeln!(out, "$Entities\n0 0 {} {}", last[2], last[3])?;
-    for ((dim, tag), entity) in &entities {
+    writeln!(out, "$Entities\n0 0 {} {}", entities.count[2], entities.count[3])?;
+    for ((dim, tag), entity) in &entities.numbers {
         write!(out, "{entity}")?;
         for x in low.iter().chain(&high) {
             write!(out, " {}", Real(*x))?;
@@ -260,10 +282,13 @@ pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
         }
         writeln!(out, " 0")?;
     }
+    writeln!(out, "$EndEntities")
+}
+
+fn write_all_nodes(out: &mut dyn Write, data: &MeshData, numbers: &NodeNumbers, home: u8) -> io::Result<()> {
     let n = data.points.len();
-    let numbers = NodeNumbers::new(data, MOST);
     let [least, largest] = numbers.range(n);
-    writeln!(out, "$EndEntities\n$Nodes\n{} {n} {least} {largest}", usize::from(n > 0))?;
+    writeln!(out, "$Nodes\n{} {n} {least} {largest}", usize::from(n > 0))?;
     if n > 0 {
         writeln!(out, "{home} 1 0 {n}")?;
     }
@@ -274,7 +299,10 @@ pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
         write_point(out, point, " ")?;
         out.write_all(b"\n")?;
     }
-    writeln!(out, "$EndNodes")?;
+    writeln!(out, "$EndNodes")
+}
+
+fn write_elements(out: &mut dyn Write, data: &MeshData, numbers: &NodeNumbers, entities: &Entities) -> io::Result<()> {
     // A block for each run of elements of one type and tag keeps the order.
     let mut blocks: Vec<(i64, i64, usize)> = Vec::new();
     for (element_type, _, tag) in elements(data) {
@@ -288,13 +316,12 @@ pub(crate) fn write(out: &mut dyn Write, data: &MeshData) -> io::Result<()> {
     let mut all = elements(data).enumerate();
     for (element_type, tag, count) in blocks {
         let dim = dimension(element_type);
-        writeln!(out, "{dim} {} {element_type} {count}", entities[&(dim, tag)])?;
+        writeln!(out, "{dim} {} {element_type} {count}", entities.numbers[&(dim, tag)])?;
         for (i, (_, nodes, _)) in all.by_ref().take(count) {
             write!(out, "{}", i + 1)?;
-            write_nodes(out, nodes, &numbers)?;
+            write_nodes(out, nodes, numbers)?;
             out.write_all(b"\n")?;
         }
     }
-    writeln!(out, "$EndElements")?;
-    write_data(out, data, &numbers, Layout::Elements)
+    writeln!(out, "$EndElements")
 }
