@@ -17,7 +17,7 @@ use rayon::prelude::*;
 /// How far to go.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PillowLimits {
-    /// Pillows tried at most.
+    /// Pillows tried at most in a mesh of [`USUAL`] hexes; in larger ones fewer, as each takes longer.
     pub(crate) trials: u32,
     /// Most hexes a quad.
     pub(crate) most: f64,
@@ -25,6 +25,8 @@ pub(crate) struct PillowLimits {
     pub(crate) most_bad: usize,
 }
 
+/// Hexes of a mesh in which all trials are made. Without that a torus of 128 quads with two vertices at one place took two minutes, 6 hexes bad all along.
+const USUAL: usize = 80;
 /// What a hex a quad costs against corners that are not positive.
 const HEX_COST: f64 = 0.3;
 /// Pillows tried at once: each gets a quick untangling, and the best few of them a full one.
@@ -70,13 +72,14 @@ pub(crate) fn with_pillows(
     let mut best = start.untangled(THOROUGH, ctx)?;
     let most_hexes = (limits.most * n_quads) as usize;
     let mut random = Random::new(ctx.seed);
+    let most_tried = u64::from(limits.trials) * USUAL as u64;
     let (mut tried, mut stale) = (0, 0);
     while !best.bad.is_empty() {
-        let is_hopeless = best.bad.len() > limits.most_bad || tried >= limits.trials || stale > MOST_STALE;
+        let is_hopeless = best.bad.len() > limits.most_bad || tried >= most_tried || stale > MOST_STALE;
         if is_hopeless || ctx.stop().is_some() {
             return None;
         }
-        ctx.report("pillows", u64::from(tried), Some(u64::from(limits.trials)), || {
+        ctx.report("pillows", tried, Some(most_tried), || {
             format!("{} hexes, {} of them bad", best.hexes.len(), best.bad.len())
         });
         let drawn: Vec<Stage> = (0..DRAWS)
@@ -84,7 +87,7 @@ pub(crate) fn with_pillows(
             .filter(|stage| stage.hexes.len() <= most_hexes)
             .take(TOGETHER)
             .collect();
-        tried += drawn.len().max(1) as u32;
+        tried += (drawn.len().max(1) * best.hexes.len().max(USUAL)) as u64;
         // A short untangling tells which pillows may help; only the best few get a long one.
         let mut quick: Vec<Stage> = drawn.into_par_iter().filter_map(|stage| stage.untangled(QUICK, ctx)).collect();
         quick.sort_by(|a, b| cost(a).total_cmp(&cost(b)));
