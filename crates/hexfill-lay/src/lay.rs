@@ -72,6 +72,8 @@ const LARGE: usize = 500;
 const MENDED_RINGS: usize = 2;
 /// Plans for one mesh: a jam that pillows do not clear asks for another.
 const PLANS: u64 = 12;
+/// Plans in turn that find no hex for a front before it is given up: each stirs for seconds, and where two found none twelve did not either.
+const FRUITLESS: u64 = 2;
 
 /// Lays meshes for a surface whose vertices are at `points` (outward orientation), fewest hexes first; none if no sweep of it leaves one void that can be
 /// held open, or no attempt came to its end. At most one on surfaces of more than 500 quads, which are cut across their waists first, and each piece laid for
@@ -244,9 +246,9 @@ fn fewest(laying: &Laying) -> usize {
     laying.open.front.len().saturating_sub(2).div_ceil(4)
 }
 
-/// The next plan for a front behind a pillow; `None` after too many.
+/// The next plan for a front behind a pillow; `None` after too many, or if none is found for this front.
 fn next_plan(laying: &Laying, seed: u64, plans: &mut u64, ctx: &Context<'_>) -> Option<Underway> {
-    (*plans..PLANS).find_map(|number| {
+    (*plans..PLANS.min(*plans + FRUITLESS)).find_map(|number| {
         *plans = number + 1;
         laying.planned(if number == 0 { seed } else { 100 * seed + number }, ctx)
     })
