@@ -128,18 +128,30 @@ fn lay_whole(
     }
     // A piece is one of many, and hexes saved there are few of all.
     let rounds = if part == Part::Piece { 1 } else { (SMALL / surface.n_quads().max(1) as u64).max(1) };
+    let mut voids: Vec<&OpenMesh> = open.iter().collect();
     for batch in 0..options.batches {
         let mut filled: Vec<Filled<'_>> = Vec::new();
         for round in batch * rounds..(batch + 1) * rounds {
+            if voids.is_empty() {
+                break;
+            }
             // As many at once as asked for, and not more: what a round finds bounds the next one, for any number of threads.
             let most = filled.get(KEPT - 1).map_or(usize::MAX, |last| last.n_hexes() - 1);
             let numbers = round * options.attempts..(round + 1) * options.attempts;
-            let begun = numbers.into_par_iter().filter_map(|number| {
+            let begun = numbers.into_par_iter().map(|number| {
                 // Of several at once one speaks.
                 let quiet = if number % options.attempts == 0 { *ctx } else { Context { progress: None, ..*ctx } };
-                Filled::new(&open[number as usize % open.len()], number, options.most, most, &quiet)
+                let open = voids[number as usize % voids.len()];
+                (open, Filled::new(open, number, options.most, most, &quiet))
             });
-            filled.extend(begun.collect::<Vec<_>>());
+            for (open, result) in begun.collect::<Vec<_>>() {
+                match result {
+                    Ok(mesh) => filled.push(mesh),
+                    // Nor would others find one, after seconds of stirring each.
+                    Err(GivenUp::NoPlan) => voids.retain(|other| !std::ptr::eq(*other, open)),
+                    Err(GivenUp::OnTheWay) => {}
+                }
+            }
             // Stable: among equals the first attempt.
             filled.sort_by_key(Filled::n_hexes);
             filled.dedup_by(|a, b| a.is_same(b));
@@ -174,17 +186,17 @@ struct Filled<'a> {
 
 impl<'a> Filled<'a> {
     /// Fills the void by the plans of that number, with at most so many hexes for each of its quads, and so many in all.
-    fn new(open: &'a OpenMesh, number: u64, a_quad: f64, in_all: usize, ctx: &Context<'_>) -> Option<Self> {
+    fn new(open: &'a OpenMesh, number: u64, a_quad: f64, in_all: usize, ctx: &Context<'_>) -> Result<Self, GivenUp> {
         let patch = Patch::round(open);
         let most = (patch.n_hexes() + (a_quad * open.front.len() as f64) as usize)
             .min(in_all.saturating_add(patch.n_hexes()).saturating_sub(open.hexes.len()));
         let Laying { open: full, pillows, .. } =
             to_the_end(Laying::new(patch.cut_out(open)), ctx.seed + number, most, ctx)?;
-        let mesh = HexMesh::try_new(full.points.len(), &full.hexes).ok()?;
+        let mesh = HexMesh::try_new(full.points.len(), &full.hexes).map_err(|_| GivenUp::OnTheWay)?;
         // The pillow under the surface is the first.
         let (points, steps, invalid) = (full.points, full.steps, full.forgiven.len());
         let laid = LaidMesh { mesh, points, steps, invalid, pillows: 1 + pillows };
-        Some(Self { open, patch, laid })
+        Ok(Self { open, patch, laid })
     }
 
     fn n_hexes(&self) -> usize {
@@ -203,20 +215,29 @@ impl<'a> Filled<'a> {
     }
 }
 
-/// Lays hexes until nothing is open. `None` if it jams, has more than `most` hexes, or is told to stop.
-fn to_the_end(mut laying: Laying, seed: u64, most: usize, ctx: &Context<'_>) -> Option<Laying> {
+/// Why an attempt did not come to its end.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+enum GivenUp {
+    /// No plan has a hex for the void as the sweep left it.
+    NoPlan,
+    /// It jammed, had too many hexes, or was told to stop.
+    OnTheWay,
+}
+
+/// Lays hexes until nothing is open, but at most `most`.
+fn to_the_end(mut laying: Laying, seed: u64, most: usize, ctx: &Context<'_>) -> Result<Laying, GivenUp> {
     if laying.open.front.is_empty() {
-        return Some(laying);
+        return Ok(laying);
     }
     let mut plans = 0;
     // A plan knows nothing of what is outside: it needs a pillow between.
     laying.pillow(&mut [], ctx);
-    let mut underway = next_plan(&laying, seed, &mut plans, ctx)?;
+    let mut underway = next_plan(&laying, seed, &mut plans, ctx).ok_or(GivenUp::NoPlan)?;
     // Pillows since the last hex; a new plan begins right behind one.
     let mut jams = 1;
     while !laying.open.front.is_empty() {
         if ctx.stop().is_some() || laying.open.hexes.len() + fewest(&laying) > most {
-            return None;
+            return Err(GivenUp::OnTheWay);
         }
         ctx.report("laying", laying.open.hexes.len() as u64, None, || {
             format!("{} hexes laid, {} quads open", laying.open.hexes.len(), laying.open.front.len())
@@ -228,17 +249,17 @@ fn to_the_end(mut laying: Laying, seed: u64, most: usize, ctx: &Context<'_>) -> 
         }
         if jams == 0 || jams == 1 && !underway.is_over() {
             if laying.open.hexes.len() + laying.open.front.len() + fewest(&laying) > most {
-                return None;
+                return Err(GivenUp::OnTheWay);
             }
             laying.pillow(&mut underway.ids, ctx);
             jams += 1;
         }
         if underway.is_over() || jams >= 2 {
-            underway = next_plan(&laying, seed, &mut plans, ctx)?;
+            underway = next_plan(&laying, seed, &mut plans, ctx).ok_or(GivenUp::OnTheWay)?;
             jams = 1;
         }
     }
-    Some(laying)
+    Ok(laying)
 }
 
 /// Hexes that what is open takes at the least: put together one by one, they have four quads more each, after the first six.
