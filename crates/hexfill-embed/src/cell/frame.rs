@@ -85,18 +85,24 @@ pub(crate) const BOTTOM_CORNERS: u64 = {
 pub(crate) const PYRAMID_EDGES: [usize; 8] = [0, 1, 4, 5, 8, 9, 10, 11];
 
 /// The members of [`CORNERS`].
-pub(crate) const CORNER_MIXED: [usize; 8] = {
-    let mut list = [0; 8];
+pub(crate) const CORNER_MIXED: [usize; 8] = members(CORNERS);
+
+/// The members of [`BOTTOM_CORNERS`].
+pub(crate) const BOTTOM_MIXED: [usize; 4] = members(BOTTOM_CORNERS);
+
+/// The numbers of the bits of a set of `N`.
+const fn members<const N: usize>(set: u64) -> [usize; N] {
+    let mut list = [0; N];
     let (mut n, mut found) = (0, 0);
     while n < 64 {
-        if CORNERS >> n & 1 == 1 {
+        if set >> n & 1 == 1 {
             list[found] = n;
             found += 1;
         }
         n += 1;
     }
     list
-};
+}
 
 impl Frame {
     /// The frame of a hex from its eight corners in VTK order.

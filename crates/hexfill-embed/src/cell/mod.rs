@@ -6,4 +6,5 @@ pub(crate) mod bisection;
 pub(crate) mod condition;
 pub(crate) mod frame;
 pub(crate) mod hessian;
+pub(crate) mod real;
 pub(crate) mod scaled_jacobian;

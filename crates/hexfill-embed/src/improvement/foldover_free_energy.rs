@@ -9,9 +9,13 @@
 //!
 //! Source: Garanzha et al. 2021; the mixed determinants as further terms are ours, after Johnen, Weill, Remacle 2017.
 
-use crate::cell::frame::{BOTTOM_CORNERS, CORNER_MIXED, CORNERS, FRAME_EDGES, Frame, MIXED, PYRAMID_EDGES};
+use crate::cell::frame::{
+    BOTTOM_CORNERS, BOTTOM_MIXED, CORNER_MIXED, CORNERS, FRAME_EDGES, Frame, MIXED, PYRAMID_EDGES,
+};
+use crate::cell::real::{LANES, Lanes, Real};
 use crate::problem::Problem;
-use hexfill_geometry::{Vector, add_scaled, cross, det, dot, norm, sub};
+use hexfill_geometry::{Vector, det, norm, sub};
+use multiversion::multiversion;
 
 /// The energy and its work space.
 pub(crate) struct Energy<'p> {
@@ -21,7 +25,7 @@ pub(crate) struct Energy<'p> {
     /// Per hex: its length, the unit of its terms.
     sizes: Vec<f64>,
     /// Per hex: its value and the gradient by corner.
-    rows: Vec<(f64, [Vector; 8])>,
+    rows: Vec<Row>,
     /// The regularisation, dimensionless.
     pub(crate) epsilon: f64,
     /// Weight of the volume term `(D^2 + 1) / (2 chi)`; if positive, every hex has the same unit of length.
@@ -34,10 +38,11 @@ pub(crate) fn chi(epsilon: f64, d: f64) -> f64 {
 }
 
 /// `1 / chi(e, D)` given `sqrt(e^2 + D^2)`.
-fn inverse_chi(epsilon: f64, d: f64, hypotenuse: f64) -> f64 {
-    let sum = hypotenuse + d.abs();
+#[inline(always)]
+fn inverse_chi<R: Real>(epsilon: R, d: R, hypotenuse: R) -> R {
+    let (sum, two) = (hypotenuse + d.abs(), R::of(2.0));
     // For d << 0 the sum d + hypotenuse cancels to nothing; e^2 over their difference is the same number.
-    if d > 0.0 { 2.0 / sum } else { 2.0 * sum / (epsilon * epsilon) }
+    d.if_positive(two, two * sum) / d.if_positive(sum, epsilon * epsilon)
 }
 
 impl<'p> Energy<'p> {
@@ -111,11 +116,15 @@ impl<'p> Energy<'p> {
 
     /// The value at `points`, and the gradient by variable (three numbers each).
     pub(crate) fn evaluate(&mut self, points: &[Vector], gradient: &mut [f64]) -> f64 {
-        let (problem, terms, sizes, epsilon) = (self.problem, &self.terms, &self.sizes, self.epsilon);
-        let volume_weight = self.volume_weight;
-        problem.map_hexes(&mut self.rows, |h| {
-            hex_energy(&problem.corners_of(h, points), terms[h], sizes[h], epsilon, volume_weight)
-        });
+        let cells = Cells {
+            hexes: &self.problem.hexes,
+            terms: &self.terms,
+            sizes: &self.sizes,
+            points,
+            weights: Weights { epsilon: self.epsilon, volume: self.volume_weight },
+        };
+        let problem = self.problem;
+        problem.map_blocks(&mut self.rows, |first, rows| cells.write(first, rows));
         problem.sum_at_variables(&self.rows, gradient);
         self.rows.iter().map(|row| row.0).sum()
     }
@@ -140,56 +149,170 @@ fn bits(mut set: u64) -> impl Iterator<Item = usize> {
     })
 }
 
-/// The energy of one hex, and its gradient by corner.
-fn hex_energy(p: &[Vector; 8], terms: u64, size: f64, epsilon: f64, volume_weight: f64) -> (f64, [Vector; 8]) {
-    let inverse = 1.0 / size;
-    let frame = Frame(Frame::new(p).0.map(|d| d.map(|e| e.map(|x| x * inverse))));
-    let mut sum = Sum { squares: frame.0.map(|d| d.map(|e| dot(e, e))), frame, value: 0.0, edges: [[[0.0; 3]; 4]; 3] };
-    if terms == CORNERS {
-        // Nearly every hex. The compiler knows these, which makes it faster by half.
-        CORNER_MIXED.into_iter().for_each(|n| sum.add(n, epsilon, volume_weight));
-    } else {
-        bits(terms).for_each(|n| sum.add(n, epsilon, volume_weight));
+/// The energy of one hex and its gradient by corner.
+type Row = (f64, [Vector; 8]);
+
+/// What the energy is taken of.
+struct Cells<'a> {
+    hexes: &'a [[u32; 8]],
+    terms: &'a [u64],
+    sizes: &'a [f64],
+    points: &'a [Vector],
+    weights: Weights,
+}
+
+/// What all terms share.
+#[derive(Clone, Copy)]
+struct Weights {
+    epsilon: f64,
+    volume: f64,
+}
+
+impl Cells<'_> {
+    /// Writes the rows of the hexes from `first` on. Untangling spends most of its time here.
+    fn write(&self, first: usize, rows: &mut [Row]) {
+        write_rows(self, first, rows);
     }
-    let mut gradient = [[0.0; 3]; 8];
+
+    /// The rows of as many hexes as there are lanes, all of which have these terms.
+    #[inline(always)]
+    fn write_in_step<const N: usize>(&self, first: usize, terms: [usize; N], rows: &mut [Row]) {
+        let mut p = [[Lanes::of(0.0); 3]; 8];
+        let mut size = Lanes::of(0.0);
+        for k in 0..LANES {
+            size.0[k] = self.sizes[first + k];
+            for (corner, &v) in p.iter_mut().zip(&self.hexes[first + k]) {
+                for axis in 0..3 {
+                    corner[axis].0[k] = self.points[v as usize][axis];
+                }
+            }
+        }
+        let (value, gradient) = hex_energy(&p, terms, size, self.weights);
+        for (k, row) in rows.iter_mut().enumerate() {
+            row.0 = value.0[k];
+            for (to, from) in row.1.iter_mut().zip(&gradient) {
+                for axis in 0..3 {
+                    to[axis] = from[axis].0[k];
+                }
+            }
+        }
+    }
+}
+
+/// [`Cells::write`], compiled once for each set of instructions; what it calls has to be inlined into it.
+#[multiversion(targets("x86_64+avx2"))]
+fn write_rows(cells: &Cells<'_>, first: usize, rows: &mut [Row]) {
+    let mut h = first;
+    for rows in rows.chunks_mut(LANES) {
+        let set = cells.terms[h];
+        let is_in_step = rows.len() == LANES && cells.terms[h..h + LANES].iter().all(|&terms| terms == set);
+        if is_in_step && set == CORNERS {
+            cells.write_in_step(h, CORNER_MIXED, rows);
+        } else if is_in_step && set == BOTTOM_CORNERS {
+            cells.write_in_step(h, BOTTOM_MIXED, rows);
+        } else {
+            for (k, row) in rows.iter_mut().enumerate() {
+                let p = cells.hexes[h + k].map(|v| cells.points[v as usize]);
+                *row = hex_energy(&p, bits(cells.terms[h + k]), cells.sizes[h + k], cells.weights);
+            }
+        }
+        for row in rows.iter_mut().filter(|row| !row.0.is_finite()) {
+            *row = (f64::INFINITY, [[0.0; 3]; 8]);
+        }
+        h += rows.len();
+    }
+}
+
+/// The energy of the hexes with corners `p`, and its gradient by corner.
+#[inline(always)]
+fn hex_energy<R: Real>(
+    p: &[[R; 3]; 8],
+    terms: impl IntoIterator<Item = usize>,
+    size: R,
+    weights: Weights,
+) -> (R, [[R; 3]; 8]) {
+    let zero = R::of(0.0);
+    let inverse = R::of(1.0) / size;
+    let mut sum = Sum {
+        frame: [[[zero; 3]; 4]; 3],
+        squares: [[zero; 4]; 3],
+        value: zero,
+        edges: [[[zero; 3]; 4]; 3],
+        epsilon: R::of(weights.epsilon),
+        volume_weight: R::of(weights.volume),
+    };
+    for (n, [from, to]) in FRAME_EDGES.into_iter().enumerate() {
+        let e = &mut sum.frame[n / 4][n % 4];
+        for axis in 0..3 {
+            e[axis] = (p[to][axis] - p[from][axis]) * inverse;
+        }
+        sum.squares[n / 4][n % 4] = dot(*e, *e);
+    }
+    for n in terms {
+        sum.add(n);
+    }
+    let mut gradient = [[zero; 3]; 8];
     for (n, [from, to]) in FRAME_EDGES.into_iter().enumerate() {
         let g = sum.edges[n / 4][n % 4];
-        gradient[to] = add_scaled(gradient[to], inverse, g);
-        gradient[from] = add_scaled(gradient[from], -inverse, g);
+        add_scaled(&mut gradient[to], inverse, g);
+        add_scaled(&mut gradient[from], zero - inverse, g);
     }
-    if sum.value.is_finite() { (sum.value, gradient) } else { (f64::INFINITY, [[0.0; 3]; 8]) }
+    (sum.value, gradient)
 }
 
-/// The terms of one hex as they add up.
-struct Sum {
-    frame: Frame,
-    /// Squared lengths of the edges.
-    squares: [[f64; 4]; 3],
-    value: f64,
+#[inline(always)]
+fn dot<R: Real>(a: [R; 3], b: [R; 3]) -> R {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[inline(always)]
+fn cross<R: Real>(a: [R; 3], b: [R; 3]) -> [R; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// `a += s * b`.
+#[inline(always)]
+fn add_scaled<R: Real>(a: &mut [R; 3], s: R, b: [R; 3]) {
+    for axis in 0..3 {
+        a[axis] = a[axis] + s * b[axis];
+    }
+}
+
+/// The terms of a hex as they add up.
+struct Sum<R> {
+    /// The edges, as in [`Frame`].
+    frame: [[[R; 3]; 4]; 3],
+    /// Their squared lengths.
+    squares: [[R; 4]; 3],
+    value: R,
     /// The gradient by edge.
-    edges: [[Vector; 4]; 3],
+    edges: [[[R; 3]; 4]; 3],
+    epsilon: R,
+    volume_weight: R,
 }
 
-impl Sum {
-    /// Adds the term of one mixed determinant. Untangling spends most of its time here.
+impl<R: Real> Sum<R> {
+    /// Adds the term of one mixed determinant.
     #[inline(always)]
-    fn add(&mut self, mixed: usize, epsilon: f64, volume_weight: f64) {
+    fn add(&mut self, mixed: usize) {
         let [a, b, c] = MIXED[mixed].edges;
-        let (e1, e2, e3) = (self.frame.0[0][a], self.frame.0[1][b], self.frame.0[2][c]);
-        let trace = (self.squares[0][a] + self.squares[1][b] + self.squares[2][c]) / 3.0;
+        let (epsilon, volume_weight) = (self.epsilon, self.volume_weight);
+        let (e1, e2, e3) = (self.frame[0][a], self.frame[1][b], self.frame[2][c]);
+        let trace = (self.squares[0][a] + self.squares[1][b] + self.squares[2][c]) / R::of(3.0);
         let n1 = cross(e2, e3);
         let d = dot(e1, n1);
         let hypotenuse = (epsilon * epsilon + d * d).sqrt();
         let inverse = inverse_chi(epsilon, d, hypotenuse);
         let root = trace.sqrt();
-        let value = (root * trace + volume_weight * 0.5 * (d * d + 1.0)) * inverse;
-        self.value += value;
+        let value = (root * trace + volume_weight * R::of(0.5) * (d * d + R::of(1.0))) * inverse;
+        self.value = self.value + value;
         // d chi / d D = chi / sqrt(e^2 + D^2).
         let along_edge = root * inverse;
         let along_det = volume_weight * d * inverse - value / hypotenuse;
         for ((axis, n), e, normal) in [((0, a), e1, n1), ((1, b), e2, cross(e3, e1)), ((2, c), e3, cross(e1, e2))] {
             let row = &mut self.edges[axis][n];
-            *row = add_scaled(add_scaled(*row, along_edge, e), along_det, normal);
+            add_scaled(row, along_edge, e);
+            add_scaled(row, along_det, normal);
         }
     }
 }
@@ -204,19 +327,46 @@ mod tests {
         let mut random = Random::of_task(5, 0);
         for terms in [CORNERS, u64::MAX, CORNERS | 1 << 17] {
             let p: [Vector; 8] = hexfill_mesh::cube::POSITIONS.map(|p| p.map(|x| f64::from(x) + 0.8 * random.signed()));
-            let (_, g) = hex_energy(&p, terms, 0.7, 0.5, 0.3);
+            let weights = Weights { epsilon: 0.5, volume: 0.3 };
+            let (_, g) = hex_energy(&p, bits(terms), 0.7, weights);
             for corner in 0..8 {
                 for k in 0..3 {
                     let h = 1e-6;
                     let at = |t: f64| {
                         let mut q = p;
                         q[corner][k] += t;
-                        hex_energy(&q, terms, 0.7, 0.5, 0.3).0
+                        hex_energy(&q, bits(terms), 0.7, weights).0
                     };
                     let slope = (at(h) - at(-h)) / (2.0 * h);
                     assert!((slope - g[corner][k]).abs() < 1e-5 * (1.0 + slope.abs()), "{slope} {}", g[corner][k]);
                 }
             }
+        }
+    }
+
+    #[test]
+    fn hexes_in_step_get_the_bits_they_get_alone() {
+        let mut random = Random::of_task(7, 0);
+        // Whole and inverted hexes, pyramids, more terms, and a number that does not divide into steps.
+        let n = 4 * LANES + 3;
+        let points: Vec<Vector> = (0..8 * n).map(|_| std::array::from_fn(|_| random.signed())).collect();
+        let hexes: Vec<[u32; 8]> = (0..n as u32).map(|h| std::array::from_fn(|k| 8 * h + k as u32)).collect();
+        let sizes: Vec<f64> = (0..n).map(|_| 0.3 + random.unit()).collect();
+        let of = |h: usize| match h / LANES {
+            0 | 1 => CORNERS,
+            2 => BOTTOM_CORNERS,
+            _ => [CORNERS, u64::MAX, CORNERS | 1 << 17][h % 3],
+        };
+        let terms: Vec<u64> = (0..n).map(of).collect();
+        let weights = Weights { epsilon: 0.1, volume: 0.2 };
+        let cells = Cells { hexes: &hexes, terms: &terms, sizes: &sizes, points: &points, weights };
+        let mut rows = vec![(0.0, [[0.0; 3]; 8]); n];
+        cells.write(0, &mut rows);
+        for (h, row) in rows.iter().enumerate() {
+            let p = hexes[h].map(|v| points[v as usize]);
+            let alone = hex_energy(&p, bits(terms[h]), sizes[h], weights);
+            assert!(alone.0.is_finite() && alone.0 > 0.0);
+            assert_eq!(format!("{alone:?}"), format!("{row:?}"), "hex {h}");
         }
     }
 

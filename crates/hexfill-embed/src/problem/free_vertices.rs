@@ -135,6 +135,16 @@ impl Problem {
         fill(out, f);
     }
 
+    /// `f(first, block)` for blocks of hexes in turn, spread over threads where there are many.
+    pub(crate) fn map_blocks<T: Send>(&self, out: &mut [T], f: impl Fn(usize, &mut [T]) + Sync) {
+        const BLOCK: usize = 256;
+        if out.len() >= PARALLEL {
+            out.par_chunks_mut(BLOCK).enumerate().for_each(|(n, block)| f(BLOCK * n, block));
+        } else {
+            f(0, out);
+        }
+    }
+
     /// Sums the gradients in `per_hex` by variable into `out`.
     pub(crate) fn sum_at_variables(&self, per_hex: &[(f64, [Vector; 8])], out: &mut [f64]) {
         if let Some(symmetry) = &self.symmetry {
