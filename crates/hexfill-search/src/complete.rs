@@ -13,6 +13,7 @@ use crate::cavity::Cavity;
 use crate::exchange::smaller_filling;
 use crate::flip::Flip;
 use crate::grow::{ClassHash, class_hash};
+use crate::halves::Membranes;
 use crate::known::Known;
 use crate::narrow_shelling::narrow_shelling;
 use hexfill_mesh::{Context, HexMesh, StopReason, generate::all_spheres_up_to};
@@ -228,6 +229,7 @@ fn shorten(known: &mut Known, targets: &[Target], breadth: &Breadth, max_hexes: 
 /// Exchanges balls in every filling with more than `max_hexes` hexes, and fills what has none.
 fn exchange_round(known: &mut Known, targets: &[Target], balls: u64, max_hexes: u32, ctx: &Context<'_>) {
     let atlas = known.to_atlas(|_| true);
+    let membranes = Membranes::new();
     let too_many = |t: &&Target| known.fewest(t.class).is_none_or(|hexes| hexes > max_hexes);
     let wanted: Vec<&Target> = targets.iter().filter(too_many).collect();
     let mut found = 0;
@@ -238,7 +240,7 @@ fn exchange_round(known: &mut Known, targets: &[Target], balls: u64, max_hexes: 
         let search = |target: &&Target| {
             // A filling of any size is better than none: the next round makes it smaller.
             let limit = known.fewest(target.class).unwrap_or(u32::MAX);
-            smaller_filling(&target.sphere, target.class, limit, known, &atlas, balls, ctx)
+            smaller_filling(&target.sphere, target.class, limit, known, &atlas, &membranes, balls, ctx)
         };
         let fillings: Vec<Option<Vec<Flip>>> = batch.par_iter().map(search).collect();
         for flips in fillings.into_iter().flatten() {

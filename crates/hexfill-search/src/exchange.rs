@@ -1,8 +1,9 @@
 //! Smaller fillings by exchanging balls: what the atlas knows of small balls makes its own large fillings smaller.
 //!
-//! A filling with too many hexes is [simplified](crate::simplify()), its balls looked up in all that is known, larger cavities and steps included, and
-//! [shelled anew](crate::narrow_shelling) if that brought fewer. A class without a filling starts from one found by [inward flips](crate::fill_from_atlas),
-//! however large. Fillings made smaller join what is known, so the next round meets them.
+//! A filling with too many hexes is put together anew from [two halves](crate::halves), where that takes fewer, then [simplified](crate::simplify()), its
+//! balls looked up in all that is known, larger cavities and steps included, and [shelled anew](crate::narrow_shelling). A class without a filling starts
+//! from halves or from one found by [inward flips](crate::fill_from_atlas), however large. Fillings made smaller join what is known, so the next round meets
+//! them.
 //!
 //! Source: Verhetsel et al. 2018 (abstract: groups of hexes get new interiors with fewer); with an atlas, ours.
 
@@ -10,6 +11,7 @@ use crate::atlas::Atlas;
 use crate::cavity::Cavity;
 use crate::flip::Flip;
 use crate::grow::ClassHash;
+use crate::halves::{Membranes, two_halves};
 use crate::inward::{FillOptions, fill_from_atlas};
 use crate::known::Known;
 use crate::narrow_shelling::narrow_shelling;
@@ -28,21 +30,23 @@ pub(crate) fn smaller_filling(
     limit: u32,
     known: &Known,
     atlas: &Atlas,
+    membranes: &Membranes,
     balls: u64,
     ctx: &Context<'_>,
 ) -> Option<Vec<Flip>> {
     // Each class takes a sequence of its own, and another one each round.
     let ctx = Context { progress: None, seed: ctx.seed ^ class as u64 ^ balls, ..*ctx };
-    let mesh = match known.smallest(class) {
-        Some(ball) => HexMesh::try_new(ball.n_vertices as usize, &ball.hexes).ok()?,
-        None => any_filling(sphere, atlas, &ctx)?,
+    let halves = two_halves(sphere, limit, atlas, membranes);
+    let mesh = match (halves.clone(), known.smallest(class)) {
+        (Some(mesh), _) => mesh,
+        (None, Some(ball)) => HexMesh::try_new(ball.n_vertices as usize, &ball.hexes).ok()?,
+        (None, None) => any_filling(sphere, atlas, &ctx)?,
     };
     let options = SimplifyOptions::default().with_max_quads(BALL_QUADS);
     let made = simplify(&mesh, atlas, &options.with_balls(balls).with_collapse(Collapse::Nothing), &ctx);
-    if made.report.after >= limit as usize {
-        return None;
-    }
-    narrow_shelling(&made.mesh)
+    let exchanged = (made.report.after < limit as usize).then(|| narrow_shelling(&made.mesh)).flatten();
+    // What exchanges bring may need larger boundaries than an atlas has.
+    exchanged.or_else(|| narrow_shelling(&halves?))
 }
 
 fn any_filling(sphere: &Cavity, atlas: &Atlas, ctx: &Context<'_>) -> Option<HexMesh> {

@@ -45,6 +45,7 @@ mod complete;
 mod exchange;
 mod flip;
 mod grow;
+mod halves;
 mod inward;
 mod known;
 mod narrow_shelling;

@@ -1,0 +1,330 @@
+//! A filling as two halves: cut a sphere along a circuit of its edges, close both sides by a membrane of quads, and fill each from the atlas.
+//!
+//! Flips and exchanged balls change a filling a few hexes at a time; where all of these lead upward, as on the trapezohedra, a cut still leads to two smaller
+//! spheres. The halves meet properly by the same pair table that makes a flip legal: what the membrane joins may not be joined by the sphere already, and
+//! what one half joins is blocked for the other.
+//!
+//! Source: ours.
+
+use crate::atlas::Atlas;
+use crate::canonical::Canonical;
+use crate::cavity::{Cavity, Pairs, next};
+use crate::grow::class_hash;
+use hexfill_mesh::{HexMesh, QuadSurface};
+
+/// Lengths of circuits, and vertices inside a membrane at most.
+const CUTS: [(usize, usize); 5] = [(4, 0), (6, 6), (8, 6), (10, 5), (12, 3)];
+/// Fewest quads on each side: less is what flips do.
+const FEWEST: usize = 3;
+/// Pairs of halves that are put together at most, those with fewest hexes on record first.
+const TRIED: usize = 3_000;
+
+/// A membrane: quads that span a circuit `0..length`, counter-clockwise, with vertices inside from `length` on.
+type Disc = Vec<[u8; 4]>;
+
+/// A circuit, a membrane, and the hexes on record for the two halves.
+struct Cut {
+    hexes: u32,
+    circuit: Vec<u8>,
+    /// Per quad of the sphere: whether it lies left of the circuit.
+    left: u64,
+    length: usize,
+    disc: usize,
+}
+
+/// The membranes of every length of [`CUTS`].
+pub(crate) struct Membranes(Vec<Vec<Disc>>);
+
+impl Membranes {
+    pub(crate) fn new() -> Self {
+        Self(CUTS.iter().map(|&(length, inside)| discs(length, inside)).collect())
+    }
+}
+
+/// A filling of `sphere` with fewer than `limit` hexes from two halves that the atlas knows, if there is one; not necessarily the smallest such.
+pub(crate) fn two_halves(sphere: &Cavity, limit: u32, atlas: &Atlas, membranes: &Membranes) -> Option<HexMesh> {
+    let mut cuts = Vec::new();
+    let pairs = sphere.surface_pairs();
+    let mut canonical = Canonical::new();
+    for (length, &(n, _)) in CUTS.iter().enumerate() {
+        for circuit in circuits(sphere, n) {
+            let left = left_of(sphere, &circuit);
+            let n_left = left.count_ones() as usize;
+            if n_left < FEWEST || sphere.n_quads() - n_left < FEWEST {
+                continue;
+            }
+            for (disc, quads) in membranes.0[length].iter().enumerate() {
+                if !is_free(quads, &circuit, &pairs) {
+                    continue;
+                }
+                let mut hexes = 0;
+                for side in [true, false] {
+                    let record = half(sphere, &circuit, left, quads, side).and_then(|(half, _)| {
+                        canonical.compute(&half);
+                        atlas.hexes_hint(class_hash(canonical.code()))
+                    });
+                    hexes += record.unwrap_or(limit);
+                    if hexes >= limit {
+                        break;
+                    }
+                }
+                if hexes < limit {
+                    cuts.push(Cut { hexes, circuit: circuit.clone(), left, length, disc });
+                }
+            }
+        }
+    }
+    // Stable: circuits and membranes come in a fixed order.
+    cuts.sort_by_key(|cut| cut.hexes);
+    cuts.iter().take(TRIED).find_map(|cut| joined(sphere, cut, &membranes.0[cut.length][cut.disc], limit, atlas))
+}
+
+/// All quadrangulations of a polygon of `length` sides with at most so many vertices inside, without vertices inside of degree 2.
+fn discs(length: usize, inside: usize) -> Vec<Disc> {
+    /// Fills polygons one after the other; each time the quad at the first side of the last polygon.
+    fn fill(mut open: Vec<Vec<u8>>, next: u8, left: usize, quads: &mut Disc, out: &mut Vec<Disc>) {
+        let Some(polygon) = open.pop() else { return out.push(quads.clone()) };
+        let n = polygon.len();
+        let (a, b) = (polygon[0], polygon[1]);
+        // The quad is (a, b, x, y), counter-clockwise; x and y on the polygon, or new. A new vertex is as good as another one, so it has one number.
+        let mut with = |x: u8, y: u8, rest: Vec<Vec<u8>>, fresh: usize| {
+            quads.push([a, b, x, y]);
+            let mut open = open.clone();
+            open.extend(rest.into_iter().filter(|polygon| polygon.len() > 2));
+            fill(open, next + fresh as u8, left - fresh, quads, out);
+            quads.pop();
+        };
+        // What is left are polygons between neighbours of the quad.
+        for i in (2..n).filter(|i| i % 2 == 0) {
+            for j in (i + 1..n).filter(|j| j % 2 == 1) {
+                let rest = vec![polygon[1..=i].to_vec(), polygon[i..=j].to_vec(), wrapped(&polygon, j)];
+                with(polygon[i], polygon[j], rest, 0);
+            }
+            if left >= 1 {
+                let mut rest = polygon[i..].to_vec();
+                rest.extend([a, next]);
+                with(polygon[i], next, vec![polygon[1..=i].to_vec(), rest], 1);
+            }
+        }
+        if left >= 1 {
+            for j in (3..n).filter(|j| j % 2 == 1) {
+                let mut rest = polygon[1..=j].to_vec();
+                rest.push(next);
+                with(next, polygon[j], vec![rest, wrapped(&polygon, j)], 1);
+            }
+        }
+        if left >= 2 {
+            let mut rest = polygon[1..].to_vec();
+            rest.extend([a, next + 1, next]);
+            with(next, next + 1, vec![rest], 2);
+        }
+    }
+    /// The polygon from a vertex on round to the first.
+    fn wrapped(polygon: &[u8], from: usize) -> Vec<u8> {
+        let mut rest = polygon[from..].to_vec();
+        rest.push(polygon[0]);
+        rest
+    }
+    let mut all = Vec::new();
+    fill(vec![(0..length as u8).collect()], length as u8, inside, &mut Vec::new(), &mut all);
+    all.retain(|quads| {
+        let degree = |v: u8| quads.iter().filter(|q| q.contains(&v)).count();
+        let is_simple = quads.iter().all(|q| (0..4).all(|i| (0..i).all(|j| q[i] != q[j])));
+        is_simple && quads.iter().flatten().all(|&v| usize::from(v) < length || degree(v) > 2)
+    });
+    all
+}
+
+/// The simple circuits of `length` edges, each once: from its smallest vertex, towards the smaller neighbour.
+fn circuits(sphere: &Cavity, length: usize) -> Vec<Vec<u8>> {
+    let mut neighbours = vec![Vec::new(); sphere.n_vertices()];
+    for d in 0..4 * sphere.n_quads {
+        neighbours[usize::from(sphere.origin[usize::from(d)])].push(sphere.origin[usize::from(next(d))]);
+    }
+    fn extend(path: &mut Vec<u8>, length: usize, neighbours: &[Vec<u8>], out: &mut Vec<Vec<u8>>) {
+        let last = path[path.len() - 1];
+        if path.len() == length {
+            if neighbours[usize::from(last)].contains(&path[0]) && path[1] < last {
+                out.push(path.clone());
+            }
+            return;
+        }
+        for &v in &neighbours[usize::from(last)] {
+            if v > path[0] && !path.contains(&v) {
+                path.push(v);
+                extend(path, length, neighbours, out);
+                path.pop();
+            }
+        }
+    }
+    let mut out = Vec::new();
+    for v in 0..sphere.n_vertices {
+        extend(&mut vec![v], length, &neighbours, &mut out);
+    }
+    out
+}
+
+/// The quads left of a circuit.
+fn left_of(sphere: &Cavity, circuit: &[u8]) -> u64 {
+    let n = circuit.len();
+    let on = |a: u8, b: u8| (0..n).any(|i| [circuit[i], circuit[(i + 1) % n]] == [a, b]);
+    let ends = |d: u8| (sphere.origin[usize::from(d)], sphere.origin[usize::from(next(d))]);
+    let mut open: Vec<u8> = (0..4 * sphere.n_quads).filter(|&d| on(ends(d).0, ends(d).1)).map(|d| d / 4).collect();
+    let mut left = 0u64;
+    while let Some(quad) = open.pop() {
+        if left >> quad & 1 == 1 {
+            continue;
+        }
+        left |= 1 << quad;
+        for d in 4 * quad..4 * quad + 4 {
+            let (a, b) = ends(d);
+            if !on(a, b) && !on(b, a) {
+                open.push(sphere.twin[usize::from(d)] / 4);
+            }
+        }
+    }
+    left
+}
+
+/// Whether no pair of the circuit that a membrane joins is joined by the sphere, but for the edges of the circuit.
+fn is_free(disc: &Disc, circuit: &[u8], pairs: &Pairs) -> bool {
+    let n = circuit.len();
+    let on_circuit = |v: u8| usize::from(v) < n;
+    disc.iter().all(|q| {
+        (0..4).all(|i| {
+            (0..i).all(|j| {
+                let (a, b) = (q[j].min(q[i]), q[i].max(q[j]));
+                let is_side = b - a == 1 || a == 0 && usize::from(b) == n - 1;
+                !on_circuit(a)
+                    || !on_circuit(b)
+                    || is_side
+                    || pairs[usize::from(circuit[usize::from(a)])] >> circuit[usize::from(b)] & 1 == 0
+            })
+        })
+    })
+}
+
+/// The half on one side, with the membrane, and its vertices in the numbers of the sphere; those inside the membrane follow.
+fn half(sphere: &Cavity, circuit: &[u8], left: u64, disc: &Disc, is_left: bool) -> Option<(Cavity, Vec<u32>)> {
+    let n = sphere.n_vertices() as u32;
+    let of_sphere = sphere.origin[..4 * sphere.n_quads()].chunks_exact(4).enumerate();
+    let mut quads: Vec<[u32; 4]> = of_sphere
+        .filter(|(quad, _)| (left >> quad & 1 == 1) == is_left)
+        .map(|(_, q)| [q[0], q[1], q[2], q[3]].map(u32::from))
+        .collect();
+    let id = |v: u8| circuit.get(usize::from(v)).map_or(n + u32::from(v) - circuit.len() as u32, |&v| u32::from(v));
+    quads.extend(disc.iter().map(|q| {
+        let q = q.map(id);
+        // The circuit runs round the left side, so the membrane runs against it there.
+        if is_left { [q[3], q[2], q[1], q[0]] } else { q }
+    }));
+    let surface = QuadSurface::try_new((n as usize) + disc.len(), &quads).ok()?;
+    Cavity::from_surface(&surface)
+}
+
+/// Both halves filled and put together, if what one uses leaves a filling of the other.
+fn joined(sphere: &Cavity, cut: &Cut, disc: &Disc, limit: u32, atlas: &Atlas) -> Option<HexMesh> {
+    for first_side in [true, false] {
+        let (mut first, first_ids) = half(sphere, &cut.circuit, cut.left, disc, first_side)?;
+        let (mut second, second_ids) = half(sphere, &cut.circuit, cut.left, disc, !first_side)?;
+        block_shared(&mut first, &first_ids, &second.surface_pairs(), &second_ids);
+        let Some((ball, map, mirrored)) = atlas.best_fit(&first, limit) else { continue };
+        let mut uses = first.surface_pairs();
+        for (v, row) in ball.boundary.blocked.iter().enumerate().take(first.n_vertices()) {
+            for (w, &image) in map.iter().enumerate() {
+                if row >> w & 1 == 1 {
+                    uses[usize::from(map[v])] |= 1 << image;
+                }
+            }
+        }
+        block_shared(&mut second, &second_ids, &uses, &first_ids);
+        let spare = limit.saturating_sub(ball.n_hexes() as u32 + 1);
+        let Some((other, other_map, other_mirrored)) = atlas.best_fit(&second, spare) else { continue };
+        let ids = |map: &[u8], ids: &[u32]| -> Vec<u32> { map.iter().map(|&v| ids[usize::from(v)]).collect() };
+        let n = (sphere.n_quads() + 2 + inside(disc, cut.circuit.len())) as u32;
+        let (mut hexes, fresh) = ball.hexes_in(&ids(&map, &first_ids), mirrored, n);
+        let (more, also) = other.hexes_in(&ids(&other_map, &second_ids), other_mirrored, n + fresh);
+        hexes.extend(more);
+        return HexMesh::try_new((n + fresh + also) as usize, &hexes).ok();
+    }
+    None
+}
+
+/// Number of vertices inside a membrane.
+fn inside(disc: &Disc, length: usize) -> usize {
+    disc.iter().flatten().map(|&v| (usize::from(v) + 1).saturating_sub(length)).max().unwrap_or(0)
+}
+
+/// Blocks in `cavity` the pairs that the other side uses, unless they are its own as well: those of the membrane.
+fn block_shared(cavity: &mut Cavity, ids: &[u32], used: &Pairs, other_ids: &[u32]) {
+    let own = cavity.surface_pairs();
+    let there: Vec<Option<usize>> = ids.iter().map(|v| other_ids.binary_search(v).ok()).collect();
+    for a in 0..ids.len() {
+        for b in 0..a {
+            if let (Some(x), Some(y)) = (there[a], there[b])
+                && used[x] >> y & 1 == 1
+                && own[a] >> b & 1 == 0
+            {
+                cavity.block(a as u8, b as u8);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hexfill_check::{Judged, Level, Options, judge};
+    use hexfill_mesh::Context;
+    use hexfill_mesh::generate::{cube_surface, random_sphere, voxel_surface};
+
+    fn filled(surface: &QuadSurface, limit: u32, membranes: &Membranes) -> Option<usize> {
+        let (sphere, _) = Cavity::from_surface(surface).unwrap();
+        let mesh = two_halves(&sphere, limit, Atlas::fewest(), membranes)?;
+        let quads: Vec<[u32; 4]> = sphere.quads().iter().map(|q| q.map(u32::from)).collect();
+        let hexes = mesh.hexes_raw();
+        let judged = Judged::connectivity(mesh.n_vertices(), &hexes).with_surface(&quads);
+        let report = judge(&judged, &Options::default().with_up_to(Level::L3), &Context::default());
+        assert!(report.passed(Level::L3), "{report}");
+        Some(hexes.len())
+    }
+
+    /// Two vertices with `n` quads round each.
+    fn trapezohedron(n: u32) -> QuadSurface {
+        let (a, b) = (|i: u32| 2 + 2 * (i % n), |i: u32| 3 + 2 * (i % n));
+        let quads: Vec<[u32; 4]> =
+            (0..n).flat_map(|i| [[0, a(i), b(i), a(i + 1)], [1, b(i + 1), a(i + 1), b(i)]]).collect();
+        QuadSurface::try_new(2 * n as usize + 2, &quads).unwrap()
+    }
+
+    #[test]
+    fn membranes_are_counted() {
+        // Without vertices inside: the ternary trees. One vertex inside a hexagon: three quads round it, two ways.
+        assert_eq!([4, 6, 8].map(|n| discs(n, 0).len()), [1, 3, 12]);
+        assert_eq!(discs(6, 1).len() - 3, 2);
+        for disc in discs(8, 2) {
+            assert_eq!(disc.len(), 3 + inside(&disc, 8));
+        }
+    }
+
+    #[test]
+    fn circuits_of_the_cube_are_counted() {
+        let (cube, _) = Cavity::from_surface(&cube_surface()).unwrap();
+        assert_eq!([4, 6, 8].map(|n| circuits(&cube, n).len()), [6, 16, 6]);
+        for circuit in circuits(&cube, 6) {
+            assert!([2, 3, 4].contains(&left_of(&cube, &circuit).count_ones()));
+        }
+    }
+
+    #[test]
+    fn what_is_cut_is_put_together_properly() {
+        let membranes = Membranes::new();
+        let row = voxel_surface([4, 1, 1], |_| true).unwrap();
+        assert_eq!(filled(&row, 5, &membranes), Some(4));
+        assert_eq!(filled(&row, 4, &membranes), None);
+        // One chord, which flips and exchanged balls do not get below 150 hexes.
+        assert_eq!(filled(&trapezohedron(9), 73, &membranes), Some(71));
+        let found = (0..12).filter_map(|seed| filled(&random_sphere(14, seed).unwrap(), 200, &membranes));
+        assert!(found.count() > 6);
+    }
+}
