@@ -37,7 +37,8 @@ impl Default for LayOptions {
 }
 
 impl LayOptions {
-    /// Meshes begun at once, each from another plan; on surfaces of fewer than 600 quads round after round, as often as they go into 600.
+    /// Meshes begun at once, each from another plan; on surfaces of fewer than 600 quads round after round, as often as they go into 600, or until five rounds
+    /// brought none with fewer hexes.
     #[must_use]
     pub fn with_attempts(self, attempts: u64) -> Self {
         Self { attempts, ..self }
@@ -64,6 +65,8 @@ impl LayOptions {
 
 /// On surfaces of fewer quads more meshes are begun, about as many more as it is smaller: what fills a void is a matter of luck, and a small one costs little.
 const SMALL: u64 = 600;
+/// After so many rounds that brought none with fewer hexes there are no more.
+const STALE: u64 = 5;
 /// Meshes from which sheets are taken: those with fewest hexes. An attempt that has more is given up.
 const KEPT: usize = 6;
 /// On surfaces of more quads only the one with fewest invalid hexes, then fewest hexes is given, as embedding another takes too long.
@@ -131,8 +134,10 @@ fn lay_whole(
     let mut voids: Vec<&OpenMesh> = open.iter().collect();
     for batch in 0..options.batches {
         let mut filled: Vec<Filled<'_>> = Vec::new();
+        // Fewest hexes so far, and the round that brought them.
+        let mut best = (usize::MAX, 0);
         for round in batch * rounds..(batch + 1) * rounds {
-            if voids.is_empty() {
+            if voids.is_empty() || best.0 < usize::MAX && round > best.1 + STALE {
                 break;
             }
             // As many at once as asked for, and not more: what a round finds bounds the next one, for any number of threads.
@@ -156,6 +161,9 @@ fn lay_whole(
             filled.sort_by_key(Filled::n_hexes);
             filled.dedup_by(|a, b| a.is_same(b));
             filled.truncate(KEPT);
+            if let Some(first) = filled.first().filter(|first| first.n_hexes() < best.0) {
+                best = (first.n_hexes(), round);
+            }
         }
         if filled.is_empty() && ctx.stop().is_none() {
             continue;

@@ -10,7 +10,7 @@ use crate::atlas::{Atlas, short_hash};
 use crate::backward::{Breadth, Way, shorter_way};
 use crate::canonical::Canonical;
 use crate::cavity::Cavity;
-use crate::exchange::smaller_filling;
+use crate::exchange::{Fillings, smaller_filling};
 use crate::flip::Flip;
 use crate::grow::{ClassHash, class_hash};
 use crate::halves::Membranes;
@@ -237,10 +237,11 @@ fn exchange_round(known: &mut Known, targets: &[Target], balls: u64, max_hexes: 
         ctx.report("atlas exchanges", (i * BATCH) as u64, Some(wanted.len() as u64), || {
             format!("{balls} balls each, {found} found or shortened")
         });
+        let from = Fillings { known, atlas: &atlas, membranes: &membranes };
         let search = |target: &&Target| {
             // A filling of any size is better than none: the next round makes it smaller.
             let limit = known.fewest(target.class).unwrap_or(u32::MAX);
-            smaller_filling(&target.sphere, target.class, limit, known, &atlas, &membranes, balls, ctx)
+            smaller_filling(&target.sphere, target.class, limit, &from, balls, ctx)
         };
         let fillings: Vec<Option<Vec<Flip>>> = batch.par_iter().map(search).collect();
         for flips in fillings.into_iter().flatten() {

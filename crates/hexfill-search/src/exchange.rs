@@ -23,17 +23,26 @@ const BALL_QUADS: usize = 26;
 /// Cavities looked at for a first filling.
 const CAVITIES: u64 = 300_000;
 
+/// What fillings are made from.
+#[derive(Clone, Copy)]
+pub(crate) struct Fillings<'a> {
+    /// What is known.
+    pub(crate) known: &'a Known,
+    /// The same, to be looked up, steps included.
+    pub(crate) atlas: &'a Atlas,
+    pub(crate) membranes: &'a Membranes,
+}
+
 /// The flips of a filling of `sphere`, whose class is `class`, with less than `limit` hexes, if `balls` tried balls lead to one.
 pub(crate) fn smaller_filling(
     sphere: &Cavity,
     class: ClassHash,
     limit: u32,
-    known: &Known,
-    atlas: &Atlas,
-    membranes: &Membranes,
+    from: &Fillings<'_>,
     balls: u64,
     ctx: &Context<'_>,
 ) -> Option<Vec<Flip>> {
+    let Fillings { known, atlas, membranes } = *from;
     // Each class takes a sequence of its own, and another one each round.
     let ctx = Context { progress: None, seed: ctx.seed ^ class as u64 ^ balls, ..*ctx };
     let halves = two_halves(sphere, limit, atlas, membranes);
