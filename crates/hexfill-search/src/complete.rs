@@ -229,7 +229,7 @@ fn shorten(known: &mut Known, targets: &[Target], breadth: &Breadth, max_hexes: 
 /// Exchanges balls in every filling with more than `max_hexes` hexes, and fills what has none.
 fn exchange_round(known: &mut Known, targets: &[Target], balls: u64, max_hexes: u32, ctx: &Context<'_>) {
     let atlas = known.to_atlas(|_| true);
-    let membranes = Membranes::new();
+    let membranes = Membranes::default();
     let too_many = |t: &&Target| known.fewest(t.class).is_none_or(|hexes| hexes > max_hexes);
     let wanted: Vec<&Target> = targets.iter().filter(too_many).collect();
     let mut found = 0;

@@ -58,6 +58,7 @@ pub use cavity::{Cavity, MAX_QUADS, MAX_VERTICES, Pairs};
 pub use complete::{CompleteOptions, CompleteReport, GivenFilling, complete};
 pub use flip::{Flip, FlipKind, Placement, apply, is_legal, legal_flips, place};
 pub use grow::{GrowOptions, Growth, LevelReport, MAX_CAP};
+pub use halves::{Membranes, two_halves};
 pub use inward::{FillOptions, FillOutcome, Filling, fill_avoiding, fill_from_atlas};
 pub use simplify::{
     Collapse, Gate, Simplified, SimplifyOptions, SimplifyReport, WithoutSheet, collapse, simplification_atlas,

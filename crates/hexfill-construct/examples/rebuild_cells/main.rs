@@ -8,6 +8,7 @@
 //! `FLAT=1` blocks the pairs of the inner facet as well: no hex then has two quads on one flat facet, so the cell may embed
 //! (see the example `place_cells` of `hexfill`). `ALL=n` writes every filling met that has at most `n` hexes more than the
 //! smallest one, as `pattern-0.cell` and so on, for `place_cells` to choose from.
+//! Holes up to `HALVES` hexes in (1; some 30 s a pattern) are also cut in two, and both halves looked up in that atlas and the two of the library.
 //! The environment variables `ATLAS` (a file of `hexfill atlas build`; else one is grown, `LEVELS` and `GROWTH_WIDTH`),
 //! `WIDTH`, `DEPTH`, `BEAM` and `CAP` (quads of a hole) set the effort.
 
@@ -15,8 +16,9 @@ mod name;
 
 use hexfill_construct::{Cell, CellChoice, CellLibrary, Pattern, Role};
 use hexfill_mesh::{Context, HexMesh, QuadSurface};
-use hexfill_search::{Atlas, Cavity, GrowOptions, Growth, apply, legal_flips};
+use hexfill_search::{Atlas, Cavity, GrowOptions, Growth, Membranes, apply, legal_flips, two_halves};
 use name::{Bits, is_subset, name};
+use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// Quads an atlas ball may have.
@@ -111,6 +113,21 @@ fn close(hole: &Hole, atlas: &Atlas, limit: usize, all: bool) -> Vec<Filling> {
     found
 }
 
+/// The smallest fillings of these holes from two halves each, with at most `limit` hexes in all.
+fn halved(holes: &[Hole], atlas: &Atlas, limit: usize, membranes: &Membranes) -> Vec<Filling> {
+    let atlases = [atlas, Atlas::embedded(), Atlas::fewest()];
+    let one = |hole: &Hole| {
+        let most = limit.min(u32::MAX as usize - 1) + 1;
+        let mesh = two_halves(&mirror(&hole.cavity)?, most.checked_sub(hole.hexes.len())? as u32, &atlases, membranes)?;
+        let n = hole.ids.len() as u32;
+        let id = |v: u32| hole.ids.get(v as usize).copied().unwrap_or_else(|| hole.n_vertices + v - n);
+        let mut hexes: Vec<[u32; 8]> = mesh.hexes_raw().into_iter().map(|h| h.map(id)).collect();
+        hexes.extend(&hole.hexes);
+        Some((hole.n_vertices + mesh.n_vertices() as u32 - n, hexes))
+    };
+    holes.par_iter().filter_map(one).collect()
+}
+
 /// Equal for fillings that differ in the numbers of their inner vertices only (and for few others): the hexes by their
 /// boundary vertices and by how many hexes their inner vertices have.
 fn signature(hexes: &[[u32; 8]], n_boundary: u32) -> Signature {
@@ -192,7 +209,14 @@ fn search(pattern: &Pattern, atlas: &Atlas, walls: bool) -> Vec<Cell> {
     let sizes = [setting("CAP", ATLAS_CAP), setting("WIDTH", 3), setting("BEAM", 1000)];
     let all = std::env::var_os("ALL").is_some();
     let more = setting("ALL", 0);
+    let membranes = Membranes::default();
     for depth in 0..=setting("DEPTH", 10) {
+        if depth < setting("HALVES", 1) + 1 {
+            let limit = met.keys().next().map_or(usize::MAX, |(n, _)| if all { n + more } else { n - 1 });
+            for filling in halved(&holes, atlas, limit, &membranes) {
+                met.entry((filling.1.len(), signature(&filling.1, roles.len() as u32))).or_insert(filling);
+            }
+        }
         for hole in &holes {
             let fewest = met.keys().next().map(|(n, _)| *n);
             let limit = fewest.map_or(usize::MAX, |n| if all { n + more } else { n - 1 });
