@@ -20,6 +20,7 @@ use crate::dart::{next, prev};
 use crate::pairs::PairTable;
 use hexfill_mesh::{QuadSurface, SurfaceError};
 use journal::Change;
+use smallvec::SmallVec;
 
 /// "No dart": the slot of a quad that is gone, or a vertex that is not on the front.
 pub(crate) const NONE: u32 = u32::MAX;
@@ -59,7 +60,7 @@ pub struct Front {
     /// Per vertex: whether it belongs to the surface and must keep its own place.
     fixed: Vec<bool>,
     hexes: Vec<[u32; 8]>,
-    star: Vec<Vec<u32>>,
+    star: Vec<SmallVec<[u32; 8]>>,
     pairs: PairTable,
     /// The surface's quads, and per fixed vertex its neighbours along surface edges.
     surface: Vec<[u32; 4]>,
@@ -105,7 +106,7 @@ impl Front {
             dart_of: vec![NONE; n],
             fixed: vec![false; n],
             hexes: hexes.to_vec(),
-            star: vec![Vec::new(); n],
+            star: vec![SmallVec::new(); n],
             pairs: PairTable::default(),
             surface: surface.to_vec(),
             surface_neighbours: vec![Vec::new(); n],
@@ -254,8 +255,8 @@ impl Front {
     }
 
     /// The vertices joined to `v` by an edge of a hex or of the surface, ascending.
-    pub(crate) fn neighbours(&self, v: u32) -> Vec<u32> {
-        let mut all = self.surface_neighbours[v as usize].clone();
+    pub(crate) fn neighbours(&self, v: u32) -> SmallVec<[u32; 32]> {
+        let mut all = SmallVec::from_slice(&self.surface_neighbours[v as usize]);
         for &h in &self.star[v as usize] {
             let hex = &self.hexes[h as usize];
             for i in (0..8).filter(|&i| hex[i] == v) {
@@ -268,9 +269,9 @@ impl Front {
     }
 
     /// The vertices joined to both by an edge, ascending; `b` had better be the one with fewer hexes.
-    pub(crate) fn common_neighbours(&self, a: u32, b: u32) -> Vec<u32> {
+    pub(crate) fn common_neighbours(&self, a: u32, b: u32) -> SmallVec<[u32; 8]> {
         let near = self.neighbours(b);
-        let mut common = vec![false; near.len()];
+        let mut common: SmallVec<[bool; 32]> = SmallVec::from_elem(false, near.len());
         let mut mark = |v: &u32| {
             if let Ok(i) = near.binary_search(v) {
                 common[i] = true;

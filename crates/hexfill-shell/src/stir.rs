@@ -22,9 +22,10 @@ const SMALL: usize = 120;
 /// Random flips made at a time.
 const KICKS: usize = 3;
 
-/// Number of quads that one chord passes twice. Linear time.
-fn self_crossings(front: &Front) -> usize {
-    let mut of = vec![[NONE; 2]; front.n_slots() as usize];
+/// Number of quads that one chord passes twice. Linear time. `of` is work space.
+fn self_crossings(front: &Front, of: &mut Vec<[u32; 2]>) -> usize {
+    of.clear();
+    of.resize(front.n_slots() as usize, [NONE; 2]);
     for (n, start) in (0..).zip(front.slots().flat_map(|q| [4 * q, 4 * q + 1])) {
         let mut at = start;
         while of[at as usize / 4][at as usize % 2] == NONE {
@@ -32,12 +33,12 @@ fn self_crossings(front: &Front) -> usize {
             at = front.twin(opposite(at));
         }
     }
-    of.into_iter().filter(|[a, b]| a == b && *a != NONE).count()
+    of.iter().filter(|[a, b]| a == b && *a != NONE).count()
 }
 
 /// What is to become less: how far the front is from closing.
-fn energy(front: &Front) -> usize {
-    front.n_quads() + self_crossings(front)
+fn energy(front: &Front, of: &mut Vec<[u32; 2]>) -> usize {
+    front.n_quads() + self_crossings(front, of)
 }
 
 /// A flip: a dart and what is covered; `None`: the three quads round the dart's origin.
@@ -148,7 +149,9 @@ fn descend(
         let mut moves = moves_at(front.slots());
         random.shuffle(&mut moves);
         let small = front.n_quads() <= SMALL;
-        let mut search = Search { now: energy(front), sweeper: Sweeper::new(front, options) };
+        let mut chords = Vec::new();
+        let now = energy(front, &mut chords);
+        let mut search = Search { now, sweeper: Sweeper::new(front, options), chords };
         // Tens of thousands of moves are tried, so each is followed by small lenses alone; the whole sweep comes when
         // one was kept.
         search.sweeper.narrow(LENS);
@@ -168,6 +171,8 @@ fn descend(
 struct Search<'a> {
     now: usize,
     sweeper: Sweeper<'a>,
+    /// Per quad: its two chords, while self-crossings are counted.
+    chords: Vec<[u32; 2]>,
 }
 
 impl Search<'_> {
@@ -185,7 +190,7 @@ impl Search<'_> {
                 continue;
             }
             self.sweeper.settle(mark);
-            let rank = (energy(self.sweeper.front), self.sweeper.front.hexes().len());
+            let rank = (energy(self.sweeper.front, &mut self.chords), self.sweeper.front.hexes().len());
             if rank.0 < self.now {
                 if !best {
                     return Ok(true);
@@ -221,7 +226,7 @@ impl Search<'_> {
                     continue;
                 }
                 self.sweeper.settle(start);
-                if energy(self.sweeper.front) < self.now {
+                if energy(self.sweeper.front, &mut self.chords) < self.now {
                     return Ok(true);
                 }
                 self.sweeper.front.take_back(mark);

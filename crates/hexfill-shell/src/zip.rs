@@ -16,6 +16,7 @@
 
 use crate::dart::{next, opposite, prev};
 use crate::front::{Front, NONE};
+use smallvec::SmallVec;
 
 /// Why a flip was not made; the front is as before.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -39,16 +40,16 @@ pub enum Refused {
 #[derive(Default)]
 pub(crate) struct Pending {
     /// Vertices whose degree fell.
-    pub(crate) queue: Vec<u32>,
+    pub(crate) queue: SmallVec<[u32; 16]>,
     /// New hexes, whose pairs are not in the table yet.
-    pub(crate) hexes: Vec<u32>,
+    pub(crate) hexes: SmallVec<[u32; 2]>,
     /// Hexes that were renamed, each with its corners before; the first entry of a hex is what the table knows. Most flips that are
     /// refused are so before the table has to be asked.
-    renamed: Vec<(u32, [u32; 8])>,
+    renamed: SmallVec<[(u32, [u32; 8]); 8]>,
     /// One entry for each front edge too many between two vertices.
-    pub(crate) double: Vec<[u32; 2]>,
+    pub(crate) double: SmallVec<[[u32; 2]; 8]>,
     /// Darts of edges that stay on the front with fewer hexes wanted.
-    pub(crate) rim: Vec<u32>,
+    pub(crate) rim: SmallVec<[u32; 12]>,
     pub(crate) cost: f32,
 }
 
@@ -115,7 +116,7 @@ impl Front {
             return Err(Refused::Improper);
         }
         let mut rim = pending.rim;
-        rim.retain(|&d| self.is_quad(d / 4));
+        rim.retain(|d| self.is_quad(*d / 4));
         rim.iter_mut().for_each(|d| *d = (*d).min(self.twin(*d)));
         rim.sort_unstable();
         rim.dedup();
@@ -274,7 +275,7 @@ impl Front {
         }
         let common = self.common_neighbours(kept, gone);
         pending.renamed.extend(self.star(gone).iter().map(|&h| (h, self.hexes()[h as usize])));
-        let round: Vec<u32> = self.round_vertex(self.dart_of(gone)).collect();
+        let round: SmallVec<[u32; 8]> = self.round_vertex(self.dart_of(gone)).collect();
         for d in round {
             self.set_origin(d, kept);
         }

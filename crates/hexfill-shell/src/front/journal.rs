@@ -4,6 +4,7 @@
 
 use super::{Front, NONE};
 use crate::pairs::OldPair;
+use smallvec::SmallVec;
 
 /// One change, with what was there before.
 #[derive(Clone, Copy, Debug)]
@@ -106,7 +107,7 @@ impl Front {
         self.degree.push(0);
         self.dart_of.push(NONE);
         self.fixed.push(false);
-        self.star.push(Vec::new());
+        self.star.push(SmallVec::new());
         self.surface_neighbours.push(Vec::new());
         self.degree.len() as u32 - 1
     }
