@@ -439,7 +439,7 @@ impl<'a> Trial<'a> {
                 self.tangled = Some(Tangled { bad, filled: filled.clone(), points: placed.points.clone() });
             }
         }
-        let rank = rank(&filled, &placed, prefer);
+        let rank = rank(&filled, &placed, prefer, self.boundary.len());
         let outcome = if placed.is_certified() { Outcome::Certified(placed.worst()) } else { Outcome::NotCertified };
         self.seen.push(Candidate::new(&filled, outcome));
         if self.best.as_ref().is_none_or(|leader| rank < leader.rank) {
@@ -461,8 +461,8 @@ impl<'a> Trial<'a> {
         let how = how.with_smooth_start(false);
         let again = place_as_it_is(&from, self.boundary, Some(&how), &self.limited());
         // Never worse: the first placement stays where the second is not better.
-        let is_better = rank(filled, &again, self.options.prefer) < rank(filled, &placed, self.options.prefer);
-        if is_better { again } else { placed }
+        let rank = |placed| rank(filled, placed, self.options.prefer, self.boundary.len());
+        if rank(&again) < rank(&placed) { again } else { placed }
     }
 
     /// The mesh with the stars split that leave (next to) no room; `None` if there are none, or none can be helped.

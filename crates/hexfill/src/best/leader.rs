@@ -51,7 +51,7 @@ impl Leader {
         let polished = place_as_it_is(&from, boundary, Some(&embed.with_starts(1).with_programs(programs)), ctx);
         // What was screened is certified already; the raise must not lose that.
         if polished.is_certified() && polished.worst() > placed.worst() {
-            self.rank = rank(filled, &polished, prefer);
+            self.rank = rank(filled, &polished, prefer, boundary.len());
             self.placed = polished;
         }
     }
