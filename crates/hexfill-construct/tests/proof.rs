@@ -62,7 +62,7 @@ fn every_hex_meets_every_wall_in_a_face_of_the_wall() {
 
 #[test]
 fn the_check_sees_a_filling_that_is_not_wall_safe() {
-    let text = include_str!("../data/cells/bb-lodo.cell");
+    let text = include_str!("../data/cells/bb-lllo.cell");
     let found = Cell::parse(text).unwrap();
     assert!(bad_meetings(&found) > 0 && !found.unsafe_pairs().is_empty());
     assert_eq!(bad_meetings(&found.pillowed()), 0);
