@@ -14,7 +14,7 @@ use crate::grow::class_hash;
 use hexfill_mesh::{HexMesh, QuadSurface};
 
 /// Lengths of circuits, and vertices inside a membrane at most.
-const CUTS: [(usize, usize); 5] = [(4, 0), (6, 6), (8, 6), (10, 5), (12, 3)];
+const CUTS: [(usize, usize); 5] = [(4, 0), (6, 7), (8, 6), (10, 5), (12, 4)];
 /// Fewest quads on each side: less is what flips do.
 const FEWEST: usize = 3;
 /// Pairs of halves that are put together at most, those with fewest hexes on record first.
@@ -24,22 +24,31 @@ const TRIED: usize = 3_000;
 type Disc = Vec<[u8; 4]>;
 
 /// A circuit, a membrane, and the hexes on record for the two halves.
-struct Cut {
+struct Cut<'m> {
     hexes: u32,
     circuit: Vec<u8>,
     /// Per quad of the sphere: whether it lies left of the circuit.
     left: u64,
-    length: usize,
-    disc: usize,
+    disc: &'m Disc,
 }
 
 /// The membranes by which spheres are cut: quads that span circuits of 4 to 12 edges, with a few vertices inside. To be made once.
 #[derive(Clone, Debug)]
-pub struct Membranes(Vec<Vec<Disc>>);
+pub struct Membranes {
+    /// By length of the circuit.
+    discs: Vec<(usize, Vec<Disc>)>,
+}
 
 impl Default for Membranes {
     fn default() -> Self {
-        Self(CUTS.iter().map(|&(length, inside)| discs(length, inside)).collect())
+        Self::new(&CUTS)
+    }
+}
+
+impl Membranes {
+    /// Those for circuits of these lengths, each with at most so many vertices inside.
+    fn new(cuts: &[(usize, usize)]) -> Self {
+        Self { discs: cuts.iter().map(|&(length, inside)| (length, discs(length, inside))).collect() }
     }
 }
 
@@ -49,33 +58,33 @@ pub fn two_halves(sphere: &Cavity, limit: u32, atlases: &[&Atlas], membranes: &M
     let mut cuts = Vec::new();
     let pairs = sphere.marked();
     let mut canonical = Canonical::new();
-    for (length, &(n, _)) in CUTS.iter().enumerate() {
-        for circuit in circuits(sphere, n) {
+    for (length, discs) in &membranes.discs {
+        for circuit in circuits(sphere, *length) {
             let left = left_of(sphere, &circuit);
             let n_left = left.count_ones() as usize;
             if n_left < FEWEST || sphere.n_quads() - n_left < FEWEST {
                 continue;
             }
-            for (disc, quads) in membranes.0[length].iter().enumerate() {
-                if !is_free(quads, &circuit, &pairs) {
+            for disc in discs {
+                if !is_free(disc, &circuit, &pairs) {
                     continue;
                 }
                 let mut on_record = |side: bool| {
-                    canonical.compute(&half(sphere, &circuit, left, quads, side)?.0);
+                    canonical.compute(&half(sphere, &circuit, left, disc, side)?.0);
                     let class = class_hash(canonical.code());
                     atlases.iter().filter_map(|atlas| atlas.hexes_hint(class)).min()
                 };
                 let one = on_record(true).filter(|&one| one < limit);
                 let Some(hexes) = one.and_then(|one| Some(one + on_record(false)?)) else { continue };
                 if hexes < limit {
-                    cuts.push(Cut { hexes, circuit: circuit.clone(), left, length, disc });
+                    cuts.push(Cut { hexes, circuit: circuit.clone(), left, disc });
                 }
             }
         }
     }
     // Stable: circuits and membranes come in a fixed order.
     cuts.sort_by_key(|cut| cut.hexes);
-    cuts.iter().take(TRIED).find_map(|cut| joined(sphere, cut, &membranes.0[cut.length][cut.disc], limit, atlases))
+    cuts.iter().take(TRIED).find_map(|cut| joined(sphere, cut, limit, atlases))
 }
 
 /// All quadrangulations of a polygon of `length` sides with at most so many vertices inside, without vertices inside of degree 2.
@@ -228,7 +237,8 @@ fn half(sphere: &Cavity, circuit: &[u8], left: u64, disc: &Disc, is_left: bool) 
 }
 
 /// Both halves filled and put together, if what one uses leaves a filling of the other.
-fn joined(sphere: &Cavity, cut: &Cut, disc: &Disc, limit: u32, atlases: &[&Atlas]) -> Option<HexMesh> {
+fn joined(sphere: &Cavity, cut: &Cut<'_>, limit: u32, atlases: &[&Atlas]) -> Option<HexMesh> {
+    let disc = cut.disc;
     for first_side in [true, false] {
         let (mut first, first_ids) = half(sphere, &cut.circuit, cut.left, disc, first_side)?;
         let (mut second, second_ids) = half(sphere, &cut.circuit, cut.left, disc, !first_side)?;
@@ -328,7 +338,7 @@ mod tests {
 
     #[test]
     fn what_is_cut_is_put_together_properly() {
-        let membranes = Membranes::default();
+        let membranes = Membranes::new(&[(4, 0), (6, 3), (8, 5)]);
         let row = voxel_surface([4, 1, 1], |_| true).unwrap();
         assert_eq!(filled(&row, 5, &membranes), Some(4));
         assert_eq!(filled(&row, 4, &membranes), None);
