@@ -25,7 +25,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use xxhash_rust::xxh3::xxh3_128;
 
 /// Largest cap on the number of quads of a growing ball.
-pub const MAX_CAP: usize = 36;
+pub const MAX_CAP: usize = 44;
 const PAIR_WORDS: usize = (MAX_CAP + 2) * (MAX_CAP + 1) / 2 / 64 + 1;
 const SHARDS: usize = 64;
 
