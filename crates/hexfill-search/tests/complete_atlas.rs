@@ -1,4 +1,4 @@
-//! `data/spheres-20.hxatlas` holds a filling of every 3-connected sphere of 6 to 20 quads but 4: replayed, placed and judged here.
+//! `data/spheres-20.hxatlas` holds a filling of every 3-connected sphere of 6 to 20 quads: replayed, placed and judged here.
 //!
 //! It is not the embedded atlas: its fillings are smaller, but fewer of them embed (`record/atlas-2026-11-22.md`).
 
@@ -10,9 +10,7 @@ use rayon::prelude::*;
 
 /// 3-connected spheres of 6, 8, ..., 20 quads (Brinkmann et al. 2005).
 const CLASSES: [usize; 8] = [1, 1, 3, 11, 58, 451, 4_461, 49_957];
-/// How many of them the atlas holds: 4 are missing.
-const FILLED: [usize; 8] = [1, 1, 3, 11, 58, 451, 4_460, 49_956];
-const WORST: u32 = 68;
+const WORST: u32 = 75;
 
 /// The hexes of the atlas's filling of a sphere, judged a ball with that boundary; `None` if it has none.
 fn hexes_of_judged_filling(surface: &QuadSurface) -> Option<u64> {
@@ -30,16 +28,16 @@ fn hexes_of_judged_filling(surface: &QuadSurface) -> Option<u64> {
 }
 
 #[test]
-fn the_atlas_has_nearly_as_many_classes_as_there_are() {
+fn the_atlas_has_as_many_classes_as_there_are() {
     let stats = Atlas::fewest().stats();
     let mut hexes = 0;
-    for (quads, filled) in (6..=20).step_by(2).zip(FILLED) {
+    for (quads, classes) in (6..=20).step_by(2).zip(CLASSES) {
         let class = &stats.classes[&quads];
-        assert_eq!(class.classes, filled, "{quads} quads");
+        assert_eq!(class.classes, classes, "{quads} quads");
         assert!(class.hexes.most <= WORST);
         hexes += class.hexes.sum;
     }
-    assert!(hexes <= 43 * FILLED.iter().sum::<usize>() as u64, "mean of at most 43 hexes");
+    assert!(hexes <= 43 * CLASSES.iter().sum::<usize>() as u64, "mean of at most 43 hexes");
     // The octagonal spindle, the only 3-connected sphere of 8 quads: one hex less than the 40 that were published.
     assert_eq!(stats.classes[&8].hexes.most, 39);
 }
@@ -52,15 +50,14 @@ fn small_spheres_have_judged_fillings() {
     if !slow {
         by_size.extend([Vec::new(), (0..500).map(|seed| random_sphere(20, seed).unwrap()).collect()]);
     }
-    for ((quads, classes), filled) in (6..=20).step_by(2).zip(CLASSES).zip(FILLED) {
+    for (quads, classes) in (6..=20).step_by(2).zip(CLASSES) {
         let spheres = &by_size[quads];
         assert!(spheres.len() == classes || (quads == 20 && !slow));
         let step = if quads == 18 && !slow { 10 } else { 1 };
         let spheres: Vec<&QuadSurface> = spheres.iter().step_by(step).collect();
         let found: Vec<u64> = spheres.par_iter().filter_map(|s| hexes_of_judged_filling(s)).collect();
-        assert!(spheres.len() - found.len() <= classes - filled, "{quads} quads");
+        assert_eq!(found.len(), spheres.len(), "{quads} quads");
         if spheres.len() == classes {
-            assert_eq!(found.len(), filled, "{quads} quads");
             assert_eq!(found.iter().sum::<u64>(), Atlas::fewest().stats().classes[&quads].hexes.sum, "{quads} quads");
         }
     }
