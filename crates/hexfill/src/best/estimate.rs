@@ -49,7 +49,7 @@ pub fn estimate(problem: &Problem, options: &FillOptions, how: &PlaceOptions) ->
     let handles = surface.genus() as f64 + (surface.n_components() - 1) as f64;
     let seconds = match (options.strategy, is_tangled) {
         (Strategy::Construct, _) => [0.02 * quads, 0.5 * quads],
-        (_, true) => [0.5, 45.0 + 0.5 * quads],
+        (_, true) => [0.5, 35.0 + 0.3 * quads],
         (_, false) => [0.0004 * quads, 0.02 * quads + handles],
     };
     let n = n as u64;
