@@ -1,5 +1,5 @@
 //! The judge on 27,000 jittered hexes, level by level. `cargo bench -p hexfill-check`; compare side by side, absolute times
-//! depend on the machine. `--example scale` does the same for 10^6 hexes, with the memory.
+//! depend on the machine. `--example judge_scale` does the same for 10^6 hexes, with the memory.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use hexfill_check::{Judged, Level, Options, judge};

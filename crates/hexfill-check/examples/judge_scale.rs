@@ -1,4 +1,4 @@
-//! Time and memory of the judge on a block of n^3 cubes: `cargo run --release --example scale -- N [shuffle] [jitter]`.
+//! Time and memory of the judge on a block of n^3 cubes: `cargo run --release -p hexfill-check --example judge_scale -- N [shuffle] [jitter]`.
 //!
 //! `once` makes only the run with levels 1 to 5 and Betti numbers; `shuffle` renames vertices and reorders hexes at random (worst case for the caches); `jitter` moves the vertices so that
 //! nothing is axis-parallel.
