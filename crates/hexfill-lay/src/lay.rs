@@ -134,12 +134,13 @@ fn lay_whole(
     let mut voids: Vec<&OpenMesh> = open.iter().collect();
     for batch in 0..options.batches {
         let mut filled: Vec<Filled<'_>> = Vec::new();
-        // Fewest hexes so far, and the round that brought them.
-        let mut best = (usize::MAX, 0);
+        // The round that brought the mesh with fewest hexes.
+        let mut best = 0;
         for round in batch * rounds..(batch + 1) * rounds {
-            if voids.is_empty() || best.0 < usize::MAX && round > best.1 + STALE {
+            if voids.is_empty() || !filled.is_empty() && round > best + STALE {
                 break;
             }
+            let fewest = filled.first().map(Filled::n_hexes);
             // As many at once as asked for, and not more: what a round finds bounds the next one, for any number of threads.
             let most = filled.get(KEPT - 1).map_or(usize::MAX, |last| last.n_hexes() - 1);
             let numbers = round * options.attempts..(round + 1) * options.attempts;
@@ -161,8 +162,8 @@ fn lay_whole(
             filled.sort_by_key(Filled::n_hexes);
             filled.dedup_by(|a, b| a.is_same(b));
             filled.truncate(KEPT);
-            if let Some(first) = filled.first().filter(|first| first.n_hexes() < best.0) {
-                best = (first.n_hexes(), round);
+            if filled.first().map(Filled::n_hexes) != fewest {
+                best = round;
             }
         }
         if filled.is_empty() && ctx.stop().is_none() {

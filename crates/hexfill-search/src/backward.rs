@@ -11,8 +11,9 @@
 use crate::canonical::{Canonical, relabel};
 use crate::cavity::Cavity;
 use crate::flip::{apply, legal_flips};
-use crate::grow::{ClassHash, PackedPairs, class_hash, pack};
+use crate::grow::{ClassHash, class_hash};
 use crate::known::Known;
+use crate::packed_pairs::{PackedPairs, pack};
 use rustc_hash::FxHashSet;
 
 /// Most quads of a cavity on the way: each two more make the search several times as wide.

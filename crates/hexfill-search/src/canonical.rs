@@ -212,7 +212,7 @@ impl Canonical {
 }
 
 /// Pairs under a renumbering of the vertices.
-pub(crate) fn relabel(pairs: &Pairs, n_vertices: usize, number: &[u8; MAX_VERTICES]) -> Pairs {
+pub(crate) fn relabel(pairs: &Pairs, n_vertices: usize, number: &[u8]) -> Pairs {
     let mut image = [0; MAX_VERTICES];
     for v in 0..n_vertices {
         let mut row = pairs[v];

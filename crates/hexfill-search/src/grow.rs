@@ -15,8 +15,9 @@
 
 use crate::ball::Ball;
 use crate::canonical::{Canonical, MAX_CODE, code_len, decode};
-use crate::cavity::{Cavity, MAX_VERTICES, Pairs};
+use crate::cavity::Cavity;
 use crate::flip::{Flip, apply, candidates, is_legal, place};
+use crate::packed_pairs::{MAX_CAP, PackedPairs, is_subset, pack, unpack};
 use hexfill_mesh::{Context, StopReason};
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
@@ -24,9 +25,6 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use xxhash_rust::xxh3::xxh3_128;
 
-/// Largest cap on the number of quads of a growing ball.
-pub const MAX_CAP: usize = 44;
-const PAIR_WORDS: usize = (MAX_CAP + 2) * (MAX_CAP + 1) / 2 / 64 + 1;
 const SHARDS: usize = 64;
 
 /// Name of a class in tables: xxh3-128 of its canonical code.
@@ -41,44 +39,6 @@ pub(crate) fn cube_class() -> ClassHash {
     let mut canonical = Canonical::new();
     canonical.compute(&Cavity::cube());
     class_hash(canonical.code())
-}
-
-/// Blocked pairs of a canonical cavity, packed: pair (a, b), a < b, is bit `b (b - 1) / 2 + a`.
-pub(crate) type PackedPairs = [u64; PAIR_WORDS];
-
-pub(crate) fn pack(pairs: &Pairs, n_vertices: usize) -> PackedPairs {
-    let mut packed = [0; PAIR_WORDS];
-    for (b, row) in pairs.iter().enumerate().take(n_vertices).skip(1) {
-        let row = row & ((1 << b) - 1);
-        let (word, bit) = ((b * (b - 1) / 2) / 64, (b * (b - 1) / 2) % 64);
-        packed[word] |= row << bit;
-        if bit + b > 64 {
-            packed[word + 1] |= row >> (64 - bit);
-        }
-    }
-    packed
-}
-
-fn unpack(packed: &PackedPairs, n_vertices: usize) -> Pairs {
-    let mut pairs = [0; MAX_VERTICES];
-    for b in 1..n_vertices {
-        let (word, bit) = ((b * (b - 1) / 2) / 64, (b * (b - 1) / 2) % 64);
-        let mut row = packed[word] >> bit;
-        if bit + b > 64 {
-            row |= packed[word + 1] << (64 - bit);
-        }
-        row &= (1 << b) - 1;
-        pairs[b] |= row;
-        while row != 0 {
-            pairs[row.trailing_zeros() as usize] |= 1 << b;
-            row &= row - 1;
-        }
-    }
-    pairs
-}
-
-fn is_subset(a: &PackedPairs, b: &PackedPairs) -> bool {
-    a.iter().zip(b).all(|(a, b)| a & !b == 0)
 }
 
 /// How far and how densely to grow.
@@ -582,22 +542,6 @@ const _: () = assert!(code_len(MAX_CAP) <= MAX_CODE);
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn packed_pairs_come_back() {
-        let mut pairs = [0; MAX_VERTICES];
-        let mut state = 1u64;
-        for b in 1..MAX_CAP + 2 {
-            for a in 0..b {
-                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-                if state >> 40 & 1 == 1 {
-                    pairs[a] |= 1 << b;
-                    pairs[b] |= 1 << a;
-                }
-            }
-        }
-        assert_eq!(unpack(&pack(&pairs, MAX_CAP + 2), MAX_CAP + 2), pairs);
-    }
 
     #[test]
     fn the_first_levels_are_the_same_for_any_number_of_threads() {

@@ -8,7 +8,7 @@
 
 use crate::atlas::Atlas;
 use crate::ball::Ball;
-use crate::canonical::Canonical;
+use crate::canonical::{Canonical, relabel};
 use crate::cavity::{Cavity, Pairs, next};
 use crate::grow::class_hash;
 use hexfill_mesh::{HexMesh, QuadSurface};
@@ -244,15 +244,9 @@ fn joined(sphere: &Cavity, cut: &Cut<'_>, limit: u32, atlases: &[&Atlas]) -> Opt
         let (mut second, second_ids) = half(sphere, &cut.circuit, cut.left, disc, !first_side)?;
         block_shared(&mut first, &first_ids, &second.surface_pairs(), &second_ids);
         let Some((ball, map, mirrored)) = best_fit(atlases, &first, limit) else { continue };
-        let mut uses = first.surface_pairs();
-        for (v, row) in ball.boundary.blocked.iter().enumerate().take(first.n_vertices()) {
-            for (w, &image) in map.iter().enumerate() {
-                if row >> w & 1 == 1 {
-                    uses[usize::from(map[v])] |= 1 << image;
-                }
-            }
-        }
-        block_shared(&mut second, &second_ids, &uses, &first_ids);
+        // From here on `first` blocks what its filling uses.
+        first.blocked = relabel(&ball.boundary.blocked, first.n_vertices(), &map);
+        block_shared(&mut second, &second_ids, &first.marked(), &first_ids);
         let spare = limit.saturating_sub(ball.n_hexes() as u32 + 1);
         let Some((other, other_map, other_mirrored)) = best_fit(atlases, &second, spare) else { continue };
         let ids = |map: &[u8], ids: &[u32]| -> Vec<u32> { map.iter().map(|&v| ids[usize::from(v)]).collect() };

@@ -9,7 +9,8 @@ use crate::ball::{Ball, canonical_cavity};
 use crate::canonical::Canonical;
 use crate::cavity::Cavity;
 use crate::flip::{Flip, apply, is_legal, legal_flips, place};
-use crate::grow::{ClassHash, GrowOptions, Growth, MAX_CAP, PackedPairs, State, class_hash, pack};
+use crate::grow::{ClassHash, GrowOptions, Growth, State, class_hash};
+use crate::packed_pairs::{MAX_CAP, PackedPairs, pack};
 
 /// A growing table of states. See the module page.
 pub(crate) struct Known {

@@ -49,6 +49,7 @@ mod halves;
 mod inward;
 mod known;
 mod narrow_shelling;
+mod packed_pairs;
 mod simplify;
 
 pub use atlas::{Atlas, AtlasStats, ClassStats, Spread};
@@ -57,9 +58,10 @@ pub use ball::Ball;
 pub use cavity::{Cavity, MAX_QUADS, MAX_VERTICES, Pairs};
 pub use complete::{CompleteOptions, CompleteReport, GivenFilling, complete};
 pub use flip::{Flip, FlipKind, Placement, apply, is_legal, legal_flips, place};
-pub use grow::{GrowOptions, Growth, LevelReport, MAX_CAP};
+pub use grow::{GrowOptions, Growth, LevelReport};
 pub use halves::{Membranes, two_halves};
 pub use inward::{FillOptions, FillOutcome, Filling, fill_avoiding, fill_from_atlas};
+pub use packed_pairs::MAX_CAP;
 pub use simplify::{
     Collapse, Gate, Simplified, SimplifyOptions, SimplifyReport, WithoutSheet, collapse, simplification_atlas,
     simplify, simplify_gated, single_sheet_collapses,

@@ -10,7 +10,7 @@ use crate::ball::{canonical_cavity, mirror_hex};
 use crate::canonical::Canonical;
 use crate::cavity::Cavity;
 use crate::flip::{Flip, Placement, apply, legal_flips};
-use crate::grow::MAX_CAP;
+use crate::packed_pairs::MAX_CAP;
 use crate::simplify::{LiveMesh, Region};
 use hexfill_mesh::{HexMesh, cube};
 use rustc_hash::FxHashSet;

@@ -36,11 +36,6 @@ fn self_crossings(front: &Front, of: &mut Vec<[u32; 2]>) -> usize {
     of.iter().filter(|[a, b]| a == b && *a != NONE).count()
 }
 
-/// What is to become less: how far the front is from closing.
-fn energy(front: &Front, of: &mut Vec<[u32; 2]>) -> usize {
-    front.n_quads() + self_crossings(front, of)
-}
-
 /// A flip: a dart and what is covered; `None`: the three quads round the dart's origin.
 type Move = (u32, Option<Patch>);
 
@@ -149,9 +144,8 @@ fn descend(
         let mut moves = moves_at(front.slots());
         random.shuffle(&mut moves);
         let small = front.n_quads() <= SMALL;
-        let mut chords = Vec::new();
-        let now = energy(front, &mut chords);
-        let mut search = Search { now, sweeper: Sweeper::new(front, options), chords };
+        let mut search = Search { now: 0, sweeper: Sweeper::new(front, options), chords: Vec::new() };
+        search.now = search.energy();
         // Tens of thousands of moves are tried, so each is followed by small lenses alone; the whole sweep comes when
         // one was kept.
         search.sweeper.narrow(LENS);
@@ -176,6 +170,11 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
+    /// What is to become less: how far the front is from closing.
+    fn energy(&mut self) -> usize {
+        self.sweeper.front.n_quads() + self_crossings(self.sweeper.front, &mut self.chords)
+    }
+
     /// Makes one flip that lowers the energy: the first, or the best.
     fn one(&mut self, moves: &[Move], best: bool, ctx: &Context<'_>) -> Result<bool, StopReason> {
         // Energy counts quads and self-crossings: on spheres whose chords are simple the sweep closes the void, so
@@ -190,7 +189,7 @@ impl Search<'_> {
                 continue;
             }
             self.sweeper.settle(mark);
-            let rank = (energy(self.sweeper.front, &mut self.chords), self.sweeper.front.hexes().len());
+            let rank = (self.energy(), self.sweeper.front.hexes().len());
             if rank.0 < self.now {
                 if !best {
                     return Ok(true);
@@ -226,7 +225,7 @@ impl Search<'_> {
                     continue;
                 }
                 self.sweeper.settle(start);
-                if energy(self.sweeper.front, &mut self.chords) < self.now {
+                if self.energy() < self.now {
                     return Ok(true);
                 }
                 self.sweeper.front.take_back(mark);

@@ -117,8 +117,9 @@ fn close(hole: &Hole, atlas: &Atlas, limit: usize, all: bool) -> Vec<Filling> {
 fn halved(holes: &[Hole], atlas: &Atlas, limit: usize, membranes: &Membranes) -> Vec<Filling> {
     let atlases = [atlas, Atlas::embedded(), Atlas::fewest()];
     let one = |hole: &Hole| {
-        let most = limit.min(u32::MAX as usize - 1) + 1;
-        let mesh = two_halves(&mirror(&hole.cavity)?, most.checked_sub(hole.hexes.len())? as u32, &atlases, membranes)?;
+        let below = u32::try_from(limit).map_or(u32::MAX, |most| most.saturating_add(1));
+        let below = below.checked_sub(hole.hexes.len() as u32)?;
+        let mesh = two_halves(&mirror(&hole.cavity)?, below, &atlases, membranes)?;
         let n = hole.ids.len() as u32;
         let id = |v: u32| hole.ids.get(v as usize).copied().unwrap_or_else(|| hole.n_vertices + v - n);
         let mut hexes: Vec<[u32; 8]> = mesh.hexes_raw().into_iter().map(|h| h.map(id)).collect();
@@ -210,17 +211,17 @@ fn search(pattern: &Pattern, atlas: &Atlas, walls: bool) -> Vec<Cell> {
     let all = std::env::var_os("ALL").is_some();
     let more = setting("ALL", 0);
     let membranes = Membranes::default();
+    let limit = |met: &BTreeMap<(usize, Signature), Filling>| {
+        met.keys().next().map_or(usize::MAX, |(n, _)| if all { n + more } else { n - 1 })
+    };
     for depth in 0..=setting("DEPTH", 10) {
-        if depth < setting("HALVES", 1) + 1 {
-            let limit = met.keys().next().map_or(usize::MAX, |(n, _)| if all { n + more } else { n - 1 });
-            for filling in halved(&holes, atlas, limit, &membranes) {
+        if depth <= setting("HALVES", 1) {
+            for filling in halved(&holes, atlas, limit(&met), &membranes) {
                 met.entry((filling.1.len(), signature(&filling.1, roles.len() as u32))).or_insert(filling);
             }
         }
         for hole in &holes {
-            let fewest = met.keys().next().map(|(n, _)| *n);
-            let limit = fewest.map_or(usize::MAX, |n| if all { n + more } else { n - 1 });
-            for filling in close(hole, atlas, limit, all) {
+            for filling in close(hole, atlas, limit(&met), all) {
                 let n = filling.1.len();
                 met.entry((n, signature(&filling.1, roles.len() as u32))).or_insert(filling);
             }

@@ -124,7 +124,7 @@ impl<'p> Energy<'p> {
             weights: Weights { epsilon: self.epsilon, volume: self.volume_weight },
         };
         let problem = self.problem;
-        problem.map_blocks(&mut self.rows, |first, rows| cells.write(first, rows));
+        problem.map_blocks(&mut self.rows, |first, rows| write_rows(&cells, first, rows));
         problem.sum_at_variables(&self.rows, gradient);
         self.rows.iter().map(|row| row.0).sum()
     }
@@ -169,11 +169,6 @@ struct Weights {
 }
 
 impl Cells<'_> {
-    /// Writes the rows of the hexes from `first` on. Untangling spends most of its time here.
-    fn write(&self, first: usize, rows: &mut [Row]) {
-        write_rows(self, first, rows);
-    }
-
     /// The rows of as many hexes as there are lanes, all of which have these terms.
     #[inline(always)]
     fn write_in_step<const N: usize>(&self, first: usize, terms: [usize; N], rows: &mut [Row]) {
@@ -199,7 +194,8 @@ impl Cells<'_> {
     }
 }
 
-/// [`Cells::write`], compiled once for each set of instructions; what it calls has to be inlined into it.
+/// Writes the rows of the hexes from `first` on. Untangling spends most of its time here: compiled once for each set of instructions, and what it calls has
+/// to be inlined into it.
 #[multiversion(targets("x86_64+avx2"))]
 fn write_rows(cells: &Cells<'_>, first: usize, rows: &mut [Row]) {
     let mut h = first;
@@ -361,7 +357,7 @@ mod tests {
         let weights = Weights { epsilon: 0.1, volume: 0.2 };
         let cells = Cells { hexes: &hexes, terms: &terms, sizes: &sizes, points: &points, weights };
         let mut rows = vec![(0.0, [[0.0; 3]; 8]); n];
-        cells.write(0, &mut rows);
+        write_rows(&cells, 0, &mut rows);
         for (h, row) in rows.iter().enumerate() {
             let p = hexes[h].map(|v| points[v as usize]);
             let alone = hex_energy(&p, bits(terms[h]), sizes[h], weights);
