@@ -353,6 +353,17 @@ impl<'a> Trial<'a> {
         self.hopeless.get_or_insert_with(|| hopeless(problem, boundary)).clone()
     }
 
+    /// Whether a mesh of this route that cannot be valid is worth a look: the first mesh of all, or, where none is valid, the first laid one, which is all but
+    /// valid as it was laid.
+    fn is_first_of(&self, route: Route) -> bool {
+        let has_positions = |c: &Candidate| c.route == route && !matches!(c.outcome, Outcome::Bounded(_));
+        match self.class() {
+            None => true,
+            Some(2) => route == Route::Laying && !self.seen.iter().any(has_positions),
+            Some(_) => false,
+        }
+    }
+
     fn is_small(&self) -> bool {
         self.problem.surface.is_sphere() && self.problem.surface.n_quads() <= MAX_QUADS
     }
@@ -407,7 +418,7 @@ impl<'a> Trial<'a> {
             }
             // The bound is a theorem for this mesh: no positions of inner vertices beat it. Something must be
             // returned, so the first one is kept all the same.
-            if bound <= NO_ROOM && self.best.is_some() {
+            if bound <= NO_ROOM && !self.is_first_of(filled.route) {
                 self.seen.push(Candidate::new(&filled, Outcome::Bounded(bound)));
                 return Ok(());
             }
