@@ -5,9 +5,13 @@
 //! (Shewchuk 1997) on triangles, by what they share: no vertex (they may not touch), one (they may not meet elsewhere), two
 //! (they may not lie on each other).
 //!
+//! Beside a common edge no cut says what happens there: two quads fold over each other if, as the bilinear facets of hexes that they become, they pass
+//! through each other along it. This is decided in floating point.
+//!
 //! Source: Shewchuk 1997, sections 4.3 and 4.4 (ORIENT2D, ORIENT3D); what counts as crossing is ours.
 
 use crate::soup::Soup;
+use hexfill_geometry::{add_scaled, dot, norm, scale, sub};
 use rayon::prelude::*;
 use robust::{Coord, Coord3D};
 use rstar::primitives::{GeomWithData, Rectangle};
@@ -39,13 +43,14 @@ pub fn crossings(soup: &Soup, most: usize) -> Vec<[u32; 2]> {
         .collect();
     let tree = RTree::bulk_load(boxes.clone());
     let cuts = |f: u32| cuts(&soup.faces[f as usize], &scaled, &names);
+    let fold = |f: u32, g: u32| fold(&soup.faces[f as usize], &soup.faces[g as usize], &scaled, &names);
     let mut pairs: Vec<[u32; 2]> = boxes
         .par_iter()
         .flat_map_iter(|one| {
             let near = tree.locate_in_envelope_intersecting(one.envelope());
             let later = near.map(|other| other.data).filter(|&other| other > one.data);
             later
-                .filter(|&other| cross_however(&cuts(one.data), &cuts(other)))
+                .filter(|&other| cross_however(&cuts(one.data), &cuts(other)) || fold(one.data, other))
                 .map(|other| [one.data, other])
                 .collect::<Vec<_>>()
         })
@@ -95,6 +100,54 @@ fn cuts(face: &[u32], points: &[Point], names: &[u32]) -> Vec<Vec<Triangle>> {
 
 fn cross_however(a: &[Vec<Triangle>], b: &[Vec<Triangle>]) -> bool {
     a.iter().all(|p| b.iter().all(|q| p.iter().any(|s| q.iter().any(|t| cross(s, t)))))
+}
+
+/// Whether two quads with an edge in common fold over each other beside it. Seen along the edge their sides are two rays that turn from one end to the other,
+/// each as a straight line between both does; where the rays meet and change sides, the quads pass through each other.
+fn fold(f: &[u32], g: &[u32], points: &[Point], names: &[u32]) -> bool {
+    let (&[_, _, _, _], &[_, _, _, _]) = (f, g) else { return false };
+    let at = |face: &[u32], k: usize| points[face[k % 4] as usize];
+    let edge = |face: &[u32], k: usize| [0, 1].map(|end| names[face[(k + end) % 4] as usize]);
+    (0..4).any(|i| {
+        let [from, to] = edge(f, i);
+        let beside = (0..4).find_map(|j| match edge(g, j) {
+            e if e == [to, from] => Some([at(g, j + 2), at(g, j + 3)]),
+            e if e == [from, to] => Some([at(g, j + 3), at(g, j + 2)]),
+            _ => None,
+        });
+        let ends = [at(f, i), at(f, i + 1)];
+        let along = sub(ends[1], ends[0]);
+        let across = |k: usize, to: Point| {
+            let side = sub(to, ends[k]);
+            add_scaled(side, -dot(side, along) / dot(along, along), along)
+        };
+        let sides = |[p, q]: [Point; 2]| [across(0, p), across(1, q)];
+        beside.is_some_and(|other| rays_change_sides(sides([at(f, i + 3), at(f, i + 2)]), sides(other), along))
+    })
+}
+
+/// Whether, on the way from 0 to 1, two vectors across an axis that each move along a straight line point the same way and change sides there.
+fn rays_change_sides(left: [Point; 2], right: [Point; 2], axis: Point) -> bool {
+    let turn = |l: Point, r: Point| dot(axis, hexfill_geometry::cross(l, r));
+    // The sine is a quadratic polynomial in Bernstein form, up to a positive factor.
+    let [c0, c1, c2] =
+        [turn(left[0], right[0]), 0.5 * (turn(left[0], right[1]) + turn(left[1], right[0])), turn(left[1], right[1])];
+    let size = norm(axis) * norm(left[0]).max(norm(left[1])) * norm(right[0]).max(norm(right[1]));
+    let point_alike = |t: f64| {
+        let at = |[p, q]: [Point; 2]| add_scaled(scale(1.0 - t, p), t, q);
+        dot(at(left), at(right)) > 0.0
+    };
+    // c0 (1-t)^2 + 2 c1 t (1-t) + c2 t^2, with s = t / (1 - t): c2 s^2 + 2 c1 s + c0.
+    let roots = match c1 * c1 - c0 * c2 {
+        d if d <= (1e-9 * size).powi(2) => return false,
+        // The larger of the two first, so that nothing cancels.
+        d => {
+            let q = -(c1 + d.sqrt().copysign(c1));
+            [q / c2, c0 / q]
+        }
+    };
+    let least = 1e-6;
+    roots.into_iter().filter(|s| *s > least && *s < 1.0 / least).any(|s| point_alike(s / (1.0 + s)))
 }
 
 /// Whether two triangles meet where they should not.
@@ -156,7 +209,7 @@ fn meets_in_plane([s, t]: [Point; 2], triangle: &Triangle) -> bool {
 /// The coordinate to leave out, so that the triangle keeps most of its area.
 fn dropped(triangle: &Triangle) -> usize {
     let [a, b, c] = triangle.at;
-    let n = hexfill_geometry::cross(hexfill_geometry::sub(b, a), hexfill_geometry::sub(c, a)).map(f64::abs);
+    let n = hexfill_geometry::cross(sub(b, a), sub(c, a)).map(f64::abs);
     if n[0] >= n[1] && n[0] >= n[2] {
         0
     } else if n[1] >= n[2] {
@@ -240,6 +293,36 @@ mod tests {
             let tiny = |t: [Point; 3]| t.map(|p| p.map(|x| x * 2f64.powi(-1000)));
             assert_eq!(cross_as(tiny(p), tiny(q)), found, "{p:?} {q:?}");
         }
+    }
+
+    #[test]
+    fn quads_that_turn_about_their_edge_through_each_other_fold() {
+        // Along the edge from the origin to z = 1, each with a side at the bottom and one at the top, at these angles.
+        let folds = |[a, b]: [f64; 2], [c, d]: [f64; 2]| {
+            let at = |degrees: f64, z: f64| {
+                let (y, x) = degrees.to_radians().sin_cos();
+                [x, y, z]
+            };
+            let points = vec![[0.0; 3], [0.0, 0.0, 1.0], at(b, 1.0), at(a, 0.0), at(c, 0.0), at(d, 1.0)];
+            // Wherever the second begins, whichever way round, and whichever comes first.
+            let mut counts = Vec::new();
+            for k in 0..4 {
+                for mut second in [vec![1, 0, 4, 5], vec![5, 4, 0, 1]] {
+                    second.rotate_left(k);
+                    for faces in [vec![vec![0, 1, 2, 3], second.clone()], vec![second, vec![0, 1, 2, 3]]] {
+                        counts.push(crossings(&Soup { points: points.clone(), faces }, 9).len());
+                    }
+                }
+            }
+            assert!(counts.iter().all(|&n| n == counts[0]), "{counts:?}");
+            counts[0] > 0
+        };
+        assert!(folds([10.0, 80.0], [40.0, 50.0]));
+        assert!(folds([-20.0, 30.0], [20.0, -30.0]));
+        assert!(!folds([10.0, 30.0], [40.0, 50.0]), "a wedge");
+        assert!(!folds([10.0, 80.0], [190.0, 230.0]), "they pass 180 degrees, where the surface is flat");
+        assert!(!folds([0.0, 40.0], [0.0, 80.0]), "they meet at an end, and only there");
+        assert!(!folds([100.0, 170.0], [-100.0, -10.0]));
     }
 
     #[test]

@@ -335,7 +335,7 @@ impl Findings {
                         s(n)
                     )
                 },
-                "a mesh of this surface overlaps itself: cut the solids out of each other first",
+                "a mesh of this surface overlaps itself: cut the solids out of each other first, or move a vertex",
             ),
             Finding::of(
                 "slivers",

@@ -136,7 +136,12 @@ pub fn untangle_near(
     let bad = bad_cells(problem, &points);
     let mut bad = untangle_rings(problem, &mut points, bad, &rings, context);
     if !bad.is_empty() && whole > 0 {
-        bad = untangle_whole(problem, &mut points, whole, context).0;
+        // All at once may leave more of them than patch by patch.
+        let mut trial = points.clone();
+        let left = untangle_whole(problem, &mut trial, whole, context).0;
+        if left.len() < bad.len() {
+            (points, bad) = (trial, left);
+        }
     }
     Ok((normal.restore(&points), bad.into_iter().map(HexId::new).collect()))
 }

@@ -9,6 +9,7 @@ use crate::best::budget::Budget;
 use crate::best::choice::{Candidate, Choice, Outcome};
 use crate::best::hopeless::{Hopeless, hopeless};
 use crate::best::leader::Leader;
+use crate::best::mend::mended;
 use crate::best::no_room::no_room;
 use crate::best::pillows::with_pillows;
 use crate::best::rank::{GOOD, rank, within};
@@ -216,6 +217,7 @@ impl<'a> Trial<'a> {
         }
         if self.options.strategy != Strategy::Auto {
             self.lay()?;
+            self.mend()?;
             self.put_pillows()?;
             return Ok(None);
         }
@@ -244,6 +246,7 @@ impl<'a> Trial<'a> {
             if smallest {
                 self.lay()?;
             }
+            self.mend()?;
             self.put_pillows()?;
         }
         // A construction has some 46 hexes a quad: where shelling left a few of its own invalid, it is tried on small surfaces only.
@@ -283,6 +286,23 @@ impl<'a> Trial<'a> {
             }
         }
         Ok(())
+    }
+
+    /// Puts pillows round the last hexes of the best mesh that are not valid, if only a few are left.
+    fn mend(&mut self) -> Result<(), FillError> {
+        let surface = &self.problem.surface;
+        let is_worth = self.class() == Some(2) && surface.n_quads() <= MOST_CONSTRUCTED && self.ctx.stop().is_none();
+        let is_asked = self.options.effort != Effort::Fast && self.options.layers.is_none();
+        let Some(Leader { filled, placed, .. }) = self.best.as_ref().filter(|_| is_worth && is_asked) else {
+            return Ok(());
+        };
+        let is_small = |mesh: &HexMesh| mesh.n_hexes() as u64 <= u64::from(self.options.max_hexes);
+        let made = mended(&filled.mesh, &placed.points, surface, &self.early).filter(|(mesh, ..)| is_small(mesh));
+        self.result.tried.push(Attempt::Mending { found: made.is_some() });
+        let Some((mesh, points, origin)) = made else { return Ok(()) };
+        verify(surface, &mesh, filled.route)?;
+        let mended = Filled { start: Some(points), ..filled.remade(Maker::PillowsBetween, mesh, &origin) };
+        self.consider_from(mended, false)
     }
 
     /// Puts pillows into the shelled mesh that is nearest to valid positions, if none has any. Only on small surfaces: the work grows with the mesh.

@@ -28,7 +28,8 @@ pub(crate) enum Hopeless {
 pub(crate) fn hopeless(problem: &Problem, boundary: &[[f64; 3]]) -> Option<Hopeless> {
     let pairs = crossing_quads(problem).len();
     if pairs > 0 {
-        return Some(Hopeless::Crosses(format!("{pairs} pairs of quads cross or touch")));
+        let pairs = if pairs == 1 { "a pair".to_owned() } else { format!("{pairs} pairs") };
+        return Some(Hopeless::Crosses(format!("{pairs} of quads cross or touch")));
     }
     let limits = surface_limits(&problem.surface, boundary)?;
     let bounds = limits.corners.iter().map(|c| c.bound).chain(limits.edges.iter().map(|e| e.bound));

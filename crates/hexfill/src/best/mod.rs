@@ -12,9 +12,11 @@ mod choose;
 pub(crate) mod estimate;
 mod hopeless;
 mod leader;
+mod mend;
 mod no_room;
 mod pillows;
 mod rank;
+mod stage;
 
 use crate::fill::attempt::Attempt;
 use crate::fill::error::{FillError, check_fillable};

@@ -59,6 +59,11 @@ pub enum Attempt {
         /// Complete meshes kept.
         meshes: usize,
     },
+    /// Pillows round the last hexes without valid positions.
+    Mending {
+        /// Whether all are valid then.
+        found: bool,
+    },
     /// Pillows between the stages of a shelled mesh without valid positions.
     Pillows {
         /// Whether it has some then.
@@ -103,6 +108,8 @@ impl fmt::Display for Attempt {
             }
             Self::Laying { meshes: 0 } => write!(f, "laying, in vain"),
             Self::Laying { meshes } => write!(f, "laying: {meshes} meshes"),
+            Self::Mending { found: true } => write!(f, "pillows round the last hexes that were not valid"),
+            Self::Mending { found: false } => write!(f, "pillows round the last hexes that were not valid, in vain"),
             Self::Pillows { found: true } => write!(f, "pillows between stages of the shelling"),
             Self::Pillows { found: false } => write!(f, "pillows between stages of the shelling, in vain"),
             Self::Construction(report) => report.fmt(f),

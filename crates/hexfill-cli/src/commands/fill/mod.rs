@@ -128,13 +128,15 @@ fn crossing_note(problem: &Problem) -> Option<String> {
     let pairs = hexfill::crossing_quads(problem);
     let first: Vec<String> = pairs.iter().take(3).map(|[a, b]| format!("{a} and {b}")).collect();
     let more = if pairs.len() > 3 { ", ..." } else { "" };
-    (!pairs.is_empty()).then(|| {
-        format!(
-            "{} pairs of quads cross or touch ({}{more}): a mesh of this surface overlaps itself; see `hexfill doctor`",
-            pairs.len(),
-            first.join(", ")
-        )
-    })
+    let count = match pairs.len() {
+        0 => return None,
+        1 => "a pair".to_owned(),
+        n => format!("{n} pairs"),
+    };
+    Some(format!(
+        "{count} of quads cross or touch ({}{more}): a mesh of this surface overlaps itself; see `hexfill doctor`",
+        first.join(", ")
+    ))
 }
 
 /// Refuses files that cannot be written, or would be written twice, before any work is done.
