@@ -7,8 +7,16 @@ use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-const LIMITS: [&str; 7] =
-    ["no_direction", "poor_direction", "sharp_edges", "slit_edges", "flat_corners", "needle_corners", "reflex_corners"];
+const LIMITS: [&str; 8] = [
+    "no_direction",
+    "poor_direction",
+    "sharp_edges",
+    "slit_edges",
+    "turning_sides",
+    "flat_corners",
+    "needle_corners",
+    "reflex_corners",
+];
 
 /// Said to be the same again, or to hold what `info` says of a vertex, corner or edge; a `boundary` that is text is a signature.
 const SAID_ELSEWHERE: [&str; 3] = ["mended.after", "limits.KIND.first[]", "boundary"];

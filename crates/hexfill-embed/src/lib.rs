@@ -52,7 +52,7 @@ mod serial;
 mod solvers;
 mod starts;
 
-pub use bounds::{CornerLimit, EdgeLimit, StarBound, SurfaceLimits, VertexLimit, surface_limits};
+pub use bounds::{CornerLimit, EdgeLimit, SideLimit, StarBound, SurfaceLimits, VertexLimit, surface_limits};
 pub use embed::{embed, inflate, quick_star_bound, star_bounds, tutte_start, untangle_near};
 pub use error::EmbedError;
 pub use open::{Open, OpenEffort, open_start};

@@ -21,6 +21,6 @@ mod surface_limits;
 mod vertex_star;
 
 pub(crate) use interior_bound::interior_bound;
-pub use surface_limits::{CornerLimit, EdgeLimit, SurfaceLimits, VertexLimit, surface_limits};
+pub use surface_limits::{CornerLimit, EdgeLimit, SideLimit, SurfaceLimits, VertexLimit, surface_limits};
 pub use vertex_star::StarBound;
 pub(crate) use vertex_star::{Star, least_bound, refine_stars, star_bounds_of};

@@ -1,7 +1,9 @@
 //! What a surface allows before any mesh is made of it: directions at its vertices, angles of its corners and edges.
 //!
-//! Three limits, from hard to soft:
+//! Four limits, from hard to soft:
 //! * a **corner** of a quad is a corner of some hex in every mesh, and a scaled Jacobian there is at most the sine of its angle;
+//! * a **side** of a quad is crossed by straight lines to the opposite side, as the facet of the hex is bilinear, and the scaled Jacobian on the side is at most the sine of the angle to them. Where
+//!   a quad is bent or has a reflex corner these lines turn, and may come much nearer to the side between its ends than at the corners;
 //! * an **edge** has m >= 1 hexes round it, whose corners share its dihedral angle: one of them has at most a / m, and the sine of that
 //!   bounds it (for an angle below 90 degrees the best is m = 1); angle / 90 is how many hexes it wants;
 //! * a **vertex** with one interior edge, as behind any layer of one hex a quad, needs a direction that sees all its quads. Where there is
@@ -13,7 +15,9 @@
 //! Source: ours.
 
 use crate::serial::{serialize_edge, serialize_quad, serialize_vertex};
-use hexfill_geometry::{Vector, add, best_direction, corner_angle, cross, dihedral_angle, direction, scale};
+use hexfill_geometry::{
+    Vector, add, add_scaled, best_direction, corner_angle, cross, dihedral_angle, direction, dot, norm, scale, sub,
+};
 use hexfill_mesh::{Dart, Edge, QuadId, QuadSurface, VertexId};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -27,6 +31,8 @@ pub struct SurfaceLimits {
     pub vertices: Vec<VertexLimit>,
     /// Every corner of every quad, by [`CornerLimit::bound`].
     pub corners: Vec<CornerLimit>,
+    /// Every side of every quad, by [`SideLimit::bound`].
+    pub sides: Vec<SideLimit>,
     /// Every edge, sharpest first.
     pub edges: Vec<EdgeLimit>,
 }
@@ -58,6 +64,22 @@ pub struct CornerLimit {
     /// The angle in degrees: near 0 a needle, near 180 flat, above 180 reflex (the quad is not convex).
     pub degrees: f64,
     /// No hex mesh has a larger scaled Jacobian at this corner: the sine of the angle, without its sign; 0 for an edge of length 0.
+    pub bound: f64,
+}
+
+/// The angle between a side of a quad and the lines that cross the quad from it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct SideLimit {
+    /// The quad.
+    #[serde(serialize_with = "serialize_quad")]
+    pub quad: QuadId,
+    /// The side.
+    #[serde(serialize_with = "serialize_edge")]
+    pub edge: Edge,
+    /// Where on the side the angle is sharpest or flattest: 0 at the smaller of its two vertices, 1 at the other.
+    pub at: f64,
+    /// No hex mesh has a larger scaled Jacobian there: the sine of the angle; 0 for a side of length 0. At most those of the corners at its ends.
     pub bound: f64,
 }
 
@@ -105,13 +127,15 @@ pub fn surface_limits(surface: &QuadSurface, points: &[[f64; 3]]) -> Option<Surf
     let all: Vec<Dart> = surface.darts().collect();
     let mut vertices: Vec<VertexLimit> = firsts.par_iter().with_min_len(256).map(|&d| placed.vertex_limit(d)).collect();
     let mut corners: Vec<CornerLimit> = all.par_iter().with_min_len(1024).map(|&d| placed.corner_limit(d)).collect();
+    let mut sides: Vec<SideLimit> = all.par_iter().with_min_len(1024).map(|&d| placed.side_limit(d)).collect();
     let one_of_two = |d: &&Dart| **d < surface.twin(**d);
     let mut edges: Vec<EdgeLimit> =
         all.par_iter().with_min_len(1024).filter(one_of_two).map(|&d| placed.edge_limit(d)).collect();
     vertices.par_sort_by(|a, b| a.bound.total_cmp(&b.bound).then(a.vertex.cmp(&b.vertex)));
     corners.par_sort_by(|a, b| a.bound.total_cmp(&b.bound).then((a.quad, a.vertex).cmp(&(b.quad, b.vertex))));
+    sides.par_sort_by(|a, b| a.bound.total_cmp(&b.bound).then((a.quad, a.edge).cmp(&(b.quad, b.edge))));
     edges.par_sort_by(|a, b| a.degrees.total_cmp(&b.degrees).then(a.edge.cmp(&b.edge)));
-    Some(SurfaceLimits { vertices, corners, edges })
+    Some(SurfaceLimits { vertices, corners, sides, edges })
 }
 
 /// A surface all of whose vertices have finite positions.
@@ -166,6 +190,18 @@ impl Placed<'_> {
         CornerLimit { quad: d.quad(), vertex: self.surface.origin(d), degrees: angle.to_degrees(), bound }
     }
 
+    /// Of the side of a quad along a dart.
+    fn side_limit(&self, d: Dart) -> SideLimit {
+        let (from, to) = (self.surface.origin(d), self.surface.target(d));
+        let at = |v: VertexId| self.points[v.index()];
+        let (before, after) = (self.surface.origin(d.next().next().next()), self.surface.origin(d.next().next()));
+        let (near, far) = (sub(at(before), at(from)), sub(at(after), at(to)));
+        let (t, bound) = direction(at(from), at(to)).map_or((0.0, 0.0), |along| least_sine(along, near, far));
+        let edge = Edge::new(from, to);
+        let t = if from < to { t } else { 1.0 - t };
+        SideLimit { quad: d.quad(), edge, at: t, bound }
+    }
+
     /// Of the edge of a dart.
     fn edge_limit(&self, d: Dart) -> EdgeLimit {
         let (least, most) = self.angles(d).unwrap_or((0.0, 0.0));
@@ -191,6 +227,27 @@ impl Placed<'_> {
     }
 }
 
+/// The parameter of the least sine between a unit direction and a vector that moves along a straight line from `near` at 0 to `far` at 1, and that sine; 0 where it vanishes.
+fn least_sine(along: Vector, near: Vector, far: Vector) -> (f64, f64) {
+    // Only the ratio counts; this one does not overflow.
+    let size = near.iter().chain(&far).fold(f64::MIN_POSITIVE, |m, x| m.max(x.abs()));
+    let (near, step) = (scale(1.0 / size, near), scale(1.0 / size, sub(far, near)));
+    let sine = |t: f64| {
+        let v = add_scaled(near, t, step);
+        let across = norm(cross(along, v));
+        if across > 0.0 { (across / norm(v)).min(1.0) } else { 0.0 }
+    };
+    // The squares of the part across and of the whole are quadratic in t; their ratio is stationary where f'g - fg' vanishes, whose cubic term cancels.
+    let square = |p: Vector, q: Vector| [dot(p, p), 2.0 * dot(p, q), dot(q, q)];
+    let f = square(cross(along, near), cross(along, step));
+    let g = square(near, step);
+    let (c0, c1, c2) = (f[1] * g[0] - f[0] * g[1], f[2] * g[0] - f[0] * g[2], f[2] * g[1] - f[1] * g[2]);
+    let q = -(c1 + (c1 * c1 - c0 * c2).max(0.0).sqrt().copysign(c1));
+    let inside = [q / c2, c0 / q].into_iter().filter(|t| *t > 0.0 && *t < 1.0);
+    let least = inside.chain([0.0, 1.0]).map(|t| (t, sine(t))).min_by(|a, b| a.1.total_cmp(&b.1));
+    least.unwrap_or((0.0, 0.0))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -212,6 +269,7 @@ mod tests {
             let inward = limits.vertices.iter().find(|v| v.vertex == VertexId(0)).unwrap().direction;
             assert!(inward.iter().all(|x| (x - 1.0 / 3f64.sqrt()).abs() < 1e-12), "{inward:?}");
             assert!(limits.corners.iter().all(|c| (c.degrees - 90.0).abs() < 1e-9 && c.bound > 1.0 - 1e-12));
+            assert!(limits.sides.iter().all(|s| s.bound > 1.0 - 1e-12));
             assert!(limits.edges.iter().all(|e| (e.degrees - 90.0).abs() < 1e-9 && (e.hexes - 1.0).abs() < 1e-9));
         }
         let inside_out = surface_limits(&surface.inverted(), &points).unwrap();
@@ -236,6 +294,42 @@ mod tests {
         points = POSITIONS.map(|[x, y, z]| [f64::from(x), f64::from(y) + 10.0 * f64::from(z), f64::from(z)]).to_vec();
         let limits = surface_limits(&surface, &points).unwrap();
         assert!(limits.edges[0].degrees < 6.0 && limits.edges[0].hexes < 0.07);
+    }
+
+    #[test]
+    fn a_quad_may_come_nearer_to_a_side_in_its_middle_than_at_its_corners() {
+        // Lines across from the side along x lean forward and up at one end, back and down at the other.
+        let (t, bound) = least_sine([1.0, 0.0, 0.0], [-1.0, 0.3, 0.1], [3.0, -0.1, 0.1]);
+        assert!(t > 0.0 && t < 1.0 && bound < 0.1);
+        let mut random = hexfill_mesh::Random::new(3);
+        let mut n_inside = 0;
+        for _ in 0..2000 {
+            let mut vector = || [0; 3].map(|_| 2.0 * random.unit() - 1.0);
+            let (along, near, far) = (direction([0.0; 3], vector()).unwrap(), vector(), vector());
+            let (t, least) = least_sine(along, near, far);
+            let sine = |t: f64| {
+                let v = add_scaled(scale(1.0 - t, near), t, far);
+                norm(cross(along, v)) / norm(v)
+            };
+            let sampled = (0..=1000).map(|i| sine(f64::from(i) / 1000.0)).fold(1.0, f64::min);
+            assert!((sine(t) - least).abs() < 1e-9 && least <= sampled + 1e-9 && sampled < least + 0.01);
+            n_inside += usize::from(t > 0.0 && t < 1.0);
+        }
+        assert!(n_inside > 300);
+    }
+
+    #[test]
+    fn sides_bound_no_less_than_their_corners() {
+        let (surface, mut points) = cube();
+        points[6] = [0.51, 0.51, 1.0];
+        let limits = surface_limits(&surface, &points).unwrap();
+        assert_eq!(limits.sides.len(), 24);
+        for side in &limits.sides {
+            let at_end = |v: VertexId| limits.corners.iter().find(|c| (c.quad, c.vertex) == (side.quad, v)).unwrap();
+            let (a, b) = (at_end(side.edge.0), at_end(side.edge.1));
+            assert!(side.bound <= a.bound.min(b.bound) + 1e-12, "{side:?}");
+        }
+        assert_eq!(limits.sides[0].quad, QuadId(5));
     }
 
     #[test]

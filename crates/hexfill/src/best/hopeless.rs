@@ -32,7 +32,7 @@ pub(crate) fn hopeless(problem: &Problem, boundary: &[[f64; 3]]) -> Option<Hopel
         return Some(Hopeless::Crosses(format!("{pairs} of quads cross or touch")));
     }
     let limits = surface_limits(&problem.surface, boundary)?;
-    let bounds = limits.corners.iter().map(|c| c.bound).chain(limits.edges.iter().map(|e| e.bound));
+    let bounds = limits.sides.iter().map(|s| s.bound).chain(limits.edges.iter().map(|e| e.bound));
     match bounds.fold(1.0, f64::min) {
         bound if bound < NOTHING => {
             Some(Hopeless::Folded("the angles of the surface leave no mesh a positive scaled Jacobian".to_owned()))

@@ -2,14 +2,14 @@
 //!
 //! Source: ours.
 
-use hexfill_embed::{CornerLimit, EdgeLimit, VertexLimit, surface_limits};
+use hexfill_embed::{CornerLimit, EdgeLimit, SideLimit, VertexLimit, surface_limits};
 use hexfill_mesh::QuadSurface;
 use serde::Serialize;
 
 /// Cells named, at most, of each kind.
 const FIRST: usize = 10;
 
-/// A vertex whose best single direction reaches less than this scaled Jacobian is named.
+/// A vertex whose best single direction reaches less than this scaled Jacobian is named, and a side whose quad allows less between its ends.
 const POOR: f64 = 0.1;
 
 /// Nothing up to this is called a direction that sees a quad: rounding.
@@ -64,6 +64,8 @@ pub struct LimitsInfo {
     pub sharp_edges: Named<EdgeLimit>,
     /// Edges whose outside nearly closes up.
     pub slit_edges: Named<EdgeLimit>,
+    /// Sides to which their quad comes near between the corners.
+    pub turning_sides: Named<SideLimit>,
     /// Corners of nearly 180 degrees.
     pub flat_corners: Named<CornerLimit>,
     /// Corners of nearly 0 degrees, or at an edge of length 0.
@@ -75,10 +77,10 @@ pub struct LimitsInfo {
 /// The limits of a surface; `None` if it has vertices without positions.
 pub(crate) fn describe(surface: &QuadSurface, points: &[[f64; 3]]) -> Option<LimitsInfo> {
     let limits = surface_limits(surface, points)?;
-    let by_corners = limits.corners.first().map_or(1.0, |c| c.bound);
+    let by_sides = limits.sides.first().map_or(1.0, |s| s.bound);
     let by_edges = limits.edges.iter().map(|e| e.bound).fold(1.0, f64::min);
     let by_vertices = limits.vertices.first().map_or(1.0, |v| v.bound);
-    let any_mesh = by_corners.min(by_edges);
+    let any_mesh = by_sides.min(by_edges);
     let is_flat = |c: &CornerLimit| (c.degrees - 180.0).abs() <= NEEDLE && c.degrees <= 180.0;
     let is_needle = |c: &CornerLimit| c.bound == 0.0 && c.degrees < 90.0 || c.degrees < NEEDLE;
     Some(LimitsInfo {
@@ -88,6 +90,7 @@ pub(crate) fn describe(surface: &QuadSurface, points: &[[f64; 3]]) -> Option<Lim
         poor_direction: Named::of(&limits.vertices, |v| v.bound > NOTHING && v.bound < POOR),
         sharp_edges: Named::of(&limits.edges, |e| e.degrees < SHARP),
         slit_edges: Named::of(&limits.edges, |e| e.most_degrees > SLIT),
+        turning_sides: Named::of(&limits.sides, |s| s.bound < POOR && s.at > 0.0 && s.at < 1.0),
         flat_corners: Named::of(&limits.corners, is_flat),
         needle_corners: Named::of(&limits.corners, is_needle),
         reflex_corners: Named::of(&limits.corners, |c| c.degrees > 180.0),
@@ -115,6 +118,11 @@ impl LimitsInfo {
             self.slit_edges.line("edge along a slit", "edges along slits", |e| {
                 format!("{} (up to {:.1} degrees)", e.edge, e.most_degrees)
             }),
+            self.turning_sides.line(
+                "side between whose ends the quad turns along it",
+                "sides between whose ends the quad turns along them",
+                |s| format!("{} of {} ({:.3})", s.edge, s.quad, s.bound),
+            ),
             self.flat_corners.line("nearly flat corner", "nearly flat corners", corner),
             self.needle_corners.line("needle", "needles", corner),
             self.reflex_corners.line("reflex corner", "reflex corners", corner),
