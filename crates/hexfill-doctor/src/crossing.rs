@@ -11,7 +11,7 @@
 //! Source: Shewchuk 1997, sections 4.3 and 4.4 (ORIENT2D, ORIENT3D); what counts as crossing is ours.
 
 use crate::soup::Soup;
-use hexfill_geometry::{add_scaled, dot, norm, scale, sub};
+use hexfill_geometry::{add_scaled, dot, norm, quadratic_roots, scale, sub};
 use rayon::prelude::*;
 use robust::{Coord, Coord3D};
 use rstar::primitives::{GeomWithData, Rectangle};
@@ -137,17 +137,15 @@ fn rays_change_sides(left: [Point; 2], right: [Point; 2], axis: Point) -> bool {
         let at = |[p, q]: [Point; 2]| add_scaled(scale(1.0 - t, p), t, q);
         dot(at(left), at(right)) > 0.0
     };
-    // c0 (1-t)^2 + 2 c1 t (1-t) + c2 t^2, with s = t / (1 - t): c2 s^2 + 2 c1 s + c0.
-    let roots = match c1 * c1 - c0 * c2 {
-        d if d <= (1e-9 * size).powi(2) => return false,
-        // The larger of the two first, so that nothing cancels.
-        d => {
-            let q = -(c1 + d.sqrt().copysign(c1));
-            [q / c2, c0 / q]
-        }
-    };
+    // A double root is a touch.
+    if c1 * c1 - c0 * c2 <= (1e-9 * size).powi(2) {
+        return false;
+    }
+    // c0 (1-t)^2 + 2 c1 t (1-t) + c2 t^2, with s = t / (1 - t).
+    let roots = quadratic_roots([c0, c1, c2]).into_iter().flatten();
     let least = 1e-6;
-    roots.into_iter().filter(|s| *s > least && *s < 1.0 / least).any(|s| point_alike(s / (1.0 + s)))
+    let mut inside = roots.filter(|s| *s > least && *s < 1.0 / least);
+    inside.any(|s| point_alike(s / (1.0 + s)))
 }
 
 /// Whether two triangles meet where they should not.

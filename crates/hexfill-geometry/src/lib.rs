@@ -11,6 +11,7 @@
 //! | vectors as arrays | [`dot`], [`cross`], [`det`], [`unit()`] and their like |
 //! | the angle of a corner, the dihedral angle at an edge | [`corner_angle`], [`dihedral_angle`] |
 //! | inside or outside of a closed surface, and which of several surfaces lies in which | [`winding_number`], [`holders`] |
+//! | where a quadratic polynomial vanishes | [`quadratic_roots`] |
 //! | the best direction of one free edge, good directions of several | [`best_direction`], [`climb_star`] |
 //!
 //! Not for decisions that must be exact: all of it is plain floating point. Where a sign decides (Delaunay tetrahedra, crossings) the `robust` predicates are
@@ -41,6 +42,7 @@ mod angle;
 mod direction;
 mod extent;
 mod quad;
+mod roots;
 mod star;
 mod vector;
 mod winding;
@@ -49,6 +51,7 @@ pub use angle::{corner_angle, dihedral_angle};
 pub use direction::{Best, best_direction};
 pub use extent::{bounding_box, centroid, tet_volume};
 pub use quad::{cone, halves};
+pub use roots::quadratic_roots;
 pub use star::{Ray, Reached, climb_star, star_bound};
 pub use vector::{Vector, add, add_scaled, cross, det, direction, dot, midpoint, norm, scale, sub, unit};
 pub use winding::{holders, solid_angle, winding_number};

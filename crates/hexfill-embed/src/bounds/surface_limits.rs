@@ -16,7 +16,8 @@
 
 use crate::serial::{serialize_edge, serialize_quad, serialize_vertex};
 use hexfill_geometry::{
-    Vector, add, add_scaled, best_direction, corner_angle, cross, dihedral_angle, direction, dot, norm, scale, sub,
+    Vector, add, add_scaled, best_direction, corner_angle, cross, dihedral_angle, direction, dot, norm,
+    quadratic_roots, scale, sub,
 };
 use hexfill_mesh::{Dart, Edge, QuadId, QuadSurface, VertexId};
 use rayon::prelude::*;
@@ -241,9 +242,8 @@ fn least_sine(along: Vector, near: Vector, far: Vector) -> (f64, f64) {
     let square = |p: Vector, q: Vector| [dot(p, p), 2.0 * dot(p, q), dot(q, q)];
     let f = square(cross(along, near), cross(along, step));
     let g = square(near, step);
-    let (c0, c1, c2) = (f[1] * g[0] - f[0] * g[1], f[2] * g[0] - f[0] * g[2], f[2] * g[1] - f[1] * g[2]);
-    let q = -(c1 + (c1 * c1 - c0 * c2).max(0.0).sqrt().copysign(c1));
-    let inside = [q / c2, c0 / q].into_iter().filter(|t| *t > 0.0 && *t < 1.0);
+    let stationary = [f[1] * g[0] - f[0] * g[1], f[2] * g[0] - f[0] * g[2], f[2] * g[1] - f[1] * g[2]];
+    let inside = quadratic_roots(stationary).into_iter().flatten().filter(|t| *t > 0.0 && *t < 1.0);
     let least = inside.chain([0.0, 1.0]).map(|t| (t, sine(t))).min_by(|a, b| a.1.total_cmp(&b.1));
     least.unwrap_or((0.0, 0.0))
 }
