@@ -10,10 +10,12 @@
 
 use crate::canonical::{Canonical, relabel};
 use crate::cavity::Cavity;
-use crate::flip::{apply, legal_flips};
+use crate::flip::{Placement, apply, legal_flips};
 use crate::grow::{ClassHash, class_hash};
+use crate::hole::Hole;
 use crate::known::Known;
 use crate::packed_pairs::{PackedPairs, pack};
+use hexfill_mesh::HexMesh;
 use rustc_hash::FxHashSet;
 
 /// Most quads of a cavity on the way: each two more make the search several times as wide.
@@ -31,20 +33,40 @@ pub(crate) struct Breadth {
 }
 
 /// A known state and the classes through which it leads to the one searched for.
-#[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Way {
     pub start: u32,
     pub classes: Vec<ClassHash>,
     /// Hexes of the ball at the end.
     pub hexes: u32,
+    /// The hexes taken off, and what is inside of them.
+    taken: Vec<[u32; 8]>,
+    inner: Hole,
 }
 
-/// A sphere some hexes inside the one to reach; its blocked pairs are those the hexes use.
-struct Inner {
-    cavity: Cavity,
+impl Way {
+    /// The filling of the target, whose vertices keep their numbers; others follow.
+    pub(crate) fn filling(&self, known: &Known) -> Option<HexMesh> {
+        let ball = known.ball(self.start)?;
+        let (map, mirrored) = ball.placements(&self.inner.sphere()).into_iter().next()?;
+        let ids: Vec<u32> = map.iter().map(|&v| self.inner.ids[usize::from(v)]).collect();
+        let (mut hexes, fresh) = ball.hexes_in(&ids, mirrored, self.inner.n_vertices);
+        hexes.extend(&self.taken);
+        HexMesh::try_new((self.inner.n_vertices + fresh) as usize, &hexes).ok()
+    }
+}
+
+/// A hex taken off, the class of the sphere inside of it, and the hex before.
+struct Taken {
+    hex: [u32; 8],
     class: ClassHash,
-    /// Index of the class it came from, in the trail.
-    from: u32,
+    before: Option<u32>,
+}
+
+/// A flip of a hole on the beam: a sphere some hexes inside the one to reach, whose blocked pairs are those the hexes use.
+struct Inner {
+    class: ClassHash,
+    parent: u32,
+    placement: Placement,
     score: u32,
     key: (ClassHash, PackedPairs),
 }
@@ -53,19 +75,20 @@ struct Inner {
 pub(crate) fn shorter_way(target: &Cavity, limit: u32, known: &Known, breadth: &Breadth) -> Option<Way> {
     let mut canonical = Canonical::new();
     canonical.compute(target);
-    // Classes met, and where each came from.
-    let mut trail = vec![(class_hash(canonical.code()), u32::MAX)];
-    let mut beam = vec![(target.clone(), 0u32)];
-    let mut best: Option<(u32, u32, Inner)> = None;
+    let outermost = class_hash(canonical.code());
+    let mut trail: Vec<Taken> = Vec::new();
+    let n = target.n_vertices() as u32;
+    let mut beam = vec![Hole::inside(target, (0..n).collect(), n)];
+    let mut best: Option<Way> = None;
     let mut fewest = limit;
     let mut seen = FxHashSet::default();
     // Breadth first, a beam wide: the way back is short, since hexes glued near the end decide the boundary, and
     // forward the known states do the rest.
     for depth in 1..=breadth.depth {
         let mut inside: Vec<Inner> = Vec::new();
-        for (cavity, from) in &beam {
-            for placement in legal_flips(cavity, MOST_QUADS) {
-                let cavity = apply(cavity, &placement).0;
+        for (parent, hole) in beam.iter().enumerate() {
+            for placement in legal_flips(&hole.cavity, MOST_QUADS) {
+                let cavity = apply(&hole.cavity, &placement).0;
                 canonical.compute(&cavity);
                 let class = class_hash(canonical.code());
                 let image = canonical.blocked_image(&cavity).0;
@@ -75,15 +98,22 @@ pub(crate) fn shorter_way(target: &Cavity, limit: u32, known: &Known, breadth: &
                 if !seen.insert(key) {
                     continue;
                 }
-                let mut inner = Inner { cavity, class, from: *from, score: u32::MAX, key };
-                let meeting = meet(&mut inner, &canonical, known);
+                let (score, meeting) = meet(&cavity, class, &canonical, known);
                 if let Some((start, hexes)) = meeting
                     && hexes + depth < fewest
                 {
                     fewest = hexes + depth;
-                    best = Some((start, fewest, Inner { cavity: inner.cavity.clone(), ..inner }));
+                    let (mut classes, mut taken, mut at) = (Vec::new(), vec![hole.hex(&placement)], hole.last);
+                    while let Some(Taken { hex, class, before }) = at.map(|at| &trail[at as usize]) {
+                        classes.push(*class);
+                        taken.push(*hex);
+                        at = *before;
+                    }
+                    classes.push(outermost);
+                    let inner = hole.after(&placement, u32::MAX);
+                    best = Some(Way { start, classes, hexes: fewest, taken, inner });
                 }
-                inside.push(inner);
+                inside.push(Inner { class, parent: parent as u32, placement, score, key });
             }
         }
         if breadth.first && best.is_some() {
@@ -92,43 +122,37 @@ pub(crate) fn shorter_way(target: &Cavity, limit: u32, known: &Known, breadth: &
         // Ties by name and never by arrival: the beam must not depend on the order of the flips.
         inside.sort_unstable_by_key(|i| (i.score, i.key));
         inside.truncate(breadth.beam);
-        beam.clear();
-        for inner in inside {
-            trail.push((inner.class, inner.from));
-            beam.push((inner.cavity, trail.len() as u32 - 1));
+        let mut next = Vec::with_capacity(inside.len());
+        for Inner { class, parent, placement, .. } in inside {
+            let hole = &beam[parent as usize];
+            next.push(hole.after(&placement, trail.len() as u32));
+            trail.push(Taken { hex: hole.hex(&placement), class, before: hole.last });
         }
+        beam = next;
     }
-    let (start, hexes, inner) = best?;
-    let mut classes = Vec::new();
-    let mut at = inner.from;
-    while at != u32::MAX {
-        let (class, from) = trail[at as usize];
-        classes.push(class);
-        at = from;
-    }
-    Some(Way { start, classes, hexes })
+    best
 }
 
-/// The smallest known state of the sphere's class that leaves its pairs free. Scores the sphere: hexes of the best state plus a
-/// penalty for each pair in its way.
-fn meet(inner: &mut Inner, canonical: &Canonical, known: &Known) -> Option<(u32, u32)> {
+/// A score of a sphere inside the target, hexes of the best state plus a penalty for each pair in its way, and the smallest known state of its class that
+/// leaves its pairs free, with its hexes.
+fn meet(cavity: &Cavity, class: ClassHash, canonical: &Canonical, known: &Known) -> (u32, Option<(u32, u32)>) {
     const PENALTY: u32 = 2;
-    let n = inner.cavity.n_vertices();
-    if known.fewest(inner.class).is_none() {
-        inner.score = 1000 + 16 * n as u32 + inner.cavity.n_blocked();
-        return None;
+    let n = cavity.n_vertices();
+    if known.fewest(class).is_none() {
+        return (1000 + 16 * n as u32 + cavity.n_blocked(), None);
     }
+    let mut score = u32::MAX;
     let mut best: Option<(u32, u32)> = None;
     for &flag in canonical.flags() {
-        let image = pack(&relabel(&inner.cavity.blocked, n, &Canonical::vertex_numbers(&inner.cavity, flag)), n);
-        for state in known.states_of(inner.class) {
+        let image = pack(&relabel(&cavity.blocked, n, &Canonical::vertex_numbers(cavity, flag)), n);
+        for state in known.states_of(class) {
             let overlap: u32 = image.iter().zip(known.blocked(state)).map(|(a, b)| (a & b).count_ones()).sum();
             let hexes = known.hexes(state);
-            inner.score = inner.score.min(hexes + PENALTY * overlap);
+            score = score.min(hexes + PENALTY * overlap);
             if overlap == 0 && best.is_none_or(|(_, fewest)| hexes < fewest) {
                 best = Some((state, hexes));
             }
         }
     }
-    best
+    (score, best)
 }

@@ -1,6 +1,6 @@
 //! Smaller fillings by exchanging balls: what the atlas knows of small balls makes its own large fillings smaller.
 //!
-//! A filling with too many hexes is put together anew from [two halves](crate::halves), where that takes fewer, then [simplified](crate::simplify()), its
+//! A filling with too many hexes is put together anew from [two halves](crate::halves), one of them searched backward, where that takes fewer, then [simplified](crate::simplify()), its
 //! balls looked up in all that is known, larger cavities and steps included, and [shelled anew](crate::narrow_shelling). A class without a filling starts
 //! from halves or from one found by [inward flips](crate::fill_from_atlas), however large. Fillings made smaller join what is known, so the next round meets
 //! them.
@@ -11,7 +11,7 @@ use crate::atlas::Atlas;
 use crate::cavity::Cavity;
 use crate::flip::Flip;
 use crate::grow::ClassHash;
-use crate::halves::{Membranes, two_halves};
+use crate::halves::{Membranes, smallest_halves};
 use crate::inward::{FillOptions, fill_from_atlas};
 use crate::known::Known;
 use crate::narrow_shelling::narrow_shelling;
@@ -45,7 +45,7 @@ pub(crate) fn smaller_filling(
     let Fillings { known, atlas, membranes } = *from;
     // Each class takes a sequence of its own, and another one each round.
     let ctx = Context { progress: None, seed: ctx.seed ^ class as u64 ^ balls, ..*ctx };
-    let halves = two_halves(sphere, limit, &[atlas, Atlas::embedded()], membranes);
+    let halves = smallest_halves(sphere, limit, &[atlas, Atlas::embedded()], membranes, known);
     let mesh = match (halves.clone(), known.smallest(class)) {
         (Some(mesh), _) => mesh,
         (None, Some(ball)) => HexMesh::try_new(ball.n_vertices as usize, &ball.hexes).ok()?,

@@ -7,10 +7,12 @@
 //! Source: ours.
 
 use crate::atlas::Atlas;
+use crate::backward::{Breadth, shorter_way};
 use crate::ball::Ball;
 use crate::canonical::{Canonical, relabel};
 use crate::cavity::{Cavity, Pairs, next};
 use crate::grow::class_hash;
+use crate::known::Known;
 use hexfill_mesh::{HexMesh, QuadSurface};
 
 /// Lengths of circuits, and vertices inside a membrane at most.
@@ -19,6 +21,9 @@ const CUTS: [(usize, usize); 5] = [(4, 0), (6, 7), (8, 6), (10, 5), (12, 4)];
 const FEWEST: usize = 3;
 /// Pairs of halves that are put together at most, those with fewest hexes on record first.
 const TRIED: usize = 3_000;
+/// Of these so many whose second half is searched backward, and how widely.
+const SEARCHED: usize = 60;
+const BREADTH: Breadth = Breadth { depth: 8, beam: 300, first: false };
 
 /// A membrane: quads that span a circuit `0..length`, counter-clockwise, with vertices inside from `length` on.
 type Disc = Vec<[u8; 4]>;
@@ -55,6 +60,29 @@ impl Membranes {
 /// A filling of a sphere with fewer than `limit` hexes that avoids its blocked pairs, from two halves that the atlases know; the vertices of the sphere
 /// keep their numbers, others follow. `None` if no such cut was found; a smaller filling may exist. Some seconds for 20 quads.
 pub fn two_halves(sphere: &Cavity, limit: u32, atlases: &[&Atlas], membranes: &Membranes) -> Option<HexMesh> {
+    let mut cuts = cuts(sphere, limit, atlases, membranes).into_iter().take(TRIED);
+    cuts.find_map(|cut| joined(sphere, &cut, limit, atlases, None))
+}
+
+/// [`two_halves`], and where two halves together should have fewer hexes than that, the second from a way back to a known state. Half a minute at most.
+pub(crate) fn smallest_halves(
+    sphere: &Cavity,
+    limit: u32,
+    atlases: &[&Atlas],
+    membranes: &Membranes,
+    known: &Known,
+) -> Option<HexMesh> {
+    let cuts = cuts(sphere, limit, atlases, membranes);
+    let mut best = cuts.iter().take(TRIED).find_map(|cut| joined(sphere, cut, limit, atlases, None));
+    for cut in cuts.iter().take(SEARCHED) {
+        let limit = best.as_ref().map_or(limit, |mesh| mesh.n_hexes() as u32);
+        best = joined(sphere, cut, limit, atlases, Some(known)).or(best);
+    }
+    best
+}
+
+/// The cuts whose halves have fewer than `limit` hexes on record, fewest first.
+fn cuts<'m>(sphere: &Cavity, limit: u32, atlases: &[&Atlas], membranes: &'m Membranes) -> Vec<Cut<'m>> {
     let mut cuts = Vec::new();
     let pairs = sphere.marked();
     let mut canonical = Canonical::new();
@@ -84,7 +112,7 @@ pub fn two_halves(sphere: &Cavity, limit: u32, atlases: &[&Atlas], membranes: &M
     }
     // Stable: circuits and membranes come in a fixed order.
     cuts.sort_by_key(|cut| cut.hexes);
-    cuts.iter().take(TRIED).find_map(|cut| joined(sphere, cut, limit, atlases))
+    cuts
 }
 
 /// All quadrangulations of a polygon of `length` sides with at most so many vertices inside, without vertices inside of degree 2.
@@ -236,8 +264,9 @@ fn half(sphere: &Cavity, circuit: &[u8], left: u64, disc: &Disc, is_left: bool) 
     Some((half, ids))
 }
 
-/// Both halves filled and put together, if what one uses leaves a filling of the other.
-fn joined(sphere: &Cavity, cut: &Cut<'_>, limit: u32, atlases: &[&Atlas]) -> Option<HexMesh> {
+/// Both halves filled and put together with fewer than `limit` hexes, if what one uses leaves a filling of the other: one on record, or one that a way back from
+/// it leads to.
+fn joined(sphere: &Cavity, cut: &Cut<'_>, limit: u32, atlases: &[&Atlas], known: Option<&Known>) -> Option<HexMesh> {
     let disc = cut.disc;
     for first_side in [true, false] {
         let (mut first, first_ids) = half(sphere, &cut.circuit, cut.left, disc, first_side)?;
@@ -247,16 +276,31 @@ fn joined(sphere: &Cavity, cut: &Cut<'_>, limit: u32, atlases: &[&Atlas]) -> Opt
         // From here on `first` blocks what its filling uses.
         first.blocked = relabel(&ball.boundary.blocked, first.n_vertices(), &map);
         block_shared(&mut second, &second_ids, &first.marked(), &first_ids);
-        let spare = limit.saturating_sub(ball.n_hexes() as u32 + 1);
-        let Some((other, other_map, other_mirrored)) = best_fit(atlases, &second, spare) else { continue };
-        let ids = |map: &[u8], ids: &[u32]| -> Vec<u32> { map.iter().map(|&v| ids[usize::from(v)]).collect() };
+        let n_first = ball.n_hexes() as u32;
+        let spare = limit.saturating_sub(n_first);
+        let on_record = || best_fit(atlases, &second, spare.saturating_sub(1)).map(|fit| placed(&fit, &second));
+        let by_way = |known| {
+            let mesh = shorter_way(&second, spare, known, &BREADTH)?.filling(known)?;
+            Some((mesh.hexes_raw(), mesh.n_vertices() as u32 - second.n_vertices() as u32))
+        };
+        let Some(other) = known.map_or_else(on_record, by_way) else { continue };
         let n = (sphere.n_quads() + 2 + inside(disc, cut.circuit.len())) as u32;
-        let (mut hexes, fresh) = ball.hexes_in(&ids(&map, &first_ids), mirrored, n);
-        let (more, also) = other.hexes_in(&ids(&other_map, &second_ids), other_mirrored, n + fresh);
-        hexes.extend(more);
-        return HexMesh::try_new((n + fresh + also) as usize, &hexes).ok();
+        let (mut n_vertices, mut hexes) = (n, Vec::new());
+        for ((part, fresh), ids) in [(placed(&(ball, map, mirrored), &first), &first_ids), (other, &second_ids)] {
+            // What is inside a half follows its surface.
+            let id = |v: u32| ids.get(v as usize).copied().unwrap_or(n_vertices + v - ids.len() as u32);
+            hexes.extend(part.iter().map(|hex| hex.map(id)));
+            n_vertices += fresh;
+        }
+        return HexMesh::try_new(n_vertices as usize, &hexes).ok();
     }
     None
+}
+
+/// The hexes of a ball in the numbers of the half it fits, those of its interior following, and how many these are.
+fn placed((ball, map, mirrored): &(Ball, Vec<u8>, bool), half: &Cavity) -> (Vec<[u32; 8]>, u32) {
+    let ids: Vec<u32> = map.iter().map(|&v| u32::from(v)).collect();
+    ball.hexes_in(&ids, *mirrored, half.n_vertices() as u32)
 }
 
 /// The smallest filling on record in any of the atlases.
@@ -294,13 +338,17 @@ mod tests {
 
     fn filled(surface: &QuadSurface, limit: u32, membranes: &Membranes) -> Option<usize> {
         let (sphere, _) = Cavity::from_surface(surface).unwrap();
-        let mesh = two_halves(&sphere, limit, &[Atlas::fewest()], membranes)?;
+        Some(judged(&sphere, &two_halves(&sphere, limit, &[Atlas::fewest()], membranes)?))
+    }
+
+    /// The hexes of a filling of the sphere, judged.
+    fn judged(sphere: &Cavity, mesh: &HexMesh) -> usize {
         let quads: Vec<[u32; 4]> = sphere.quads().iter().map(|q| q.map(u32::from)).collect();
         let hexes = mesh.hexes_raw();
         let judged = Judged::connectivity(mesh.n_vertices(), &hexes).with_surface(&quads);
         let report = judge(&judged, &Options::default().with_up_to(Level::L3), &Context::default());
         assert!(report.passed(Level::L3), "{report}");
-        Some(hexes.len())
+        hexes.len()
     }
 
     /// Two vertices with `n` quads round each.
@@ -340,5 +388,24 @@ mod tests {
         assert_eq!(filled(&trapezohedron(9), 73, &membranes), Some(71));
         let found = (0..12).filter_map(|seed| filled(&random_sphere(14, seed).unwrap(), 200, &membranes));
         assert!(found.count() > 6);
+    }
+    #[test]
+    fn a_way_back_gives_the_second_half_what_no_record_does() {
+        let membranes = Membranes::new(&[(6, 3)]);
+        // Few states: nothing on record avoids much.
+        let atlas = Atlas::fewest().pruned(1, |quads, hexes| quads <= 16 && hexes < 45);
+        let known = Known::from_atlas(&atlas).unwrap();
+        let (mut fewer, mut found) = (0, 0);
+        for seed in 0..4 {
+            let (sphere, _) = Cavity::from_surface(&random_sphere(18, seed).unwrap()).unwrap();
+            let plain = two_halves(&sphere, 200, &[&atlas], &membranes).map(|mesh| judged(&sphere, &mesh));
+            let by_ways = smallest_halves(&sphere, 200, &[&atlas], &membranes, &known);
+            let by_ways = by_ways.map(|mesh| judged(&sphere, &mesh));
+            assert!(by_ways.is_some() || plain.is_none());
+            assert!(by_ways <= plain || plain.is_none(), "{by_ways:?} {plain:?}");
+            found += usize::from(by_ways.is_some());
+            fewer += usize::from(by_ways.is_some() && (plain.is_none() || by_ways < plain));
+        }
+        assert!(found > 2 && fewer > 1, "{found} {fewer}");
     }
 }

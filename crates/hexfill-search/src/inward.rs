@@ -8,11 +8,11 @@
 //! Source: Verhetsel et al. 2019, figure 1 (flips from the boundary until the cavity is a known one); the beam and the blocked pairs are ours.
 
 use crate::atlas::Atlas;
-use crate::ball::mirror_image;
 use crate::canonical::Canonical;
 use crate::cavity::{Cavity, MAX_QUADS};
 use crate::flip::{Placement, apply, legal_flips};
 use crate::grow::class_hash;
+use crate::hole::Hole;
 use hexfill_mesh::{Context, HexMesh, QuadSurface, StopReason};
 use rayon::prelude::*;
 use rustc_hash::FxHashSet;
@@ -105,39 +105,6 @@ struct Glued {
     before: Option<u32>,
 }
 
-/// A cavity on the beam, seen from outside the remaining hole (mirrored).
-struct Hole {
-    cavity: Cavity,
-    /// Mesh vertex of each cavity vertex.
-    ids: Vec<u32>,
-    n_vertices: u32,
-    last: Option<u32>,
-}
-
-impl Hole {
-    /// The hex of a flip in mesh vertices; the vertices it brings are numbered on.
-    fn hex(&self, placement: &Placement) -> [u32; 8] {
-        placement.corners.map(|c| self.id(c))
-    }
-
-    fn id(&self, v: u8) -> u32 {
-        let v = usize::from(v);
-        self.ids.get(v).copied().unwrap_or_else(|| self.n_vertices + (v - self.ids.len()) as u32)
-    }
-
-    /// What is left after a flip whose hex is `last` of the trail.
-    fn after(&self, placement: &Placement, last: u32) -> Self {
-        let (cavity, before) = apply(&self.cavity, placement);
-        let fresh = placement.corners.iter().filter(|&&c| usize::from(c) >= self.ids.len()).count() as u32;
-        Self {
-            ids: before[..cavity.n_vertices()].iter().map(|&v| self.id(v)).collect(),
-            n_vertices: self.n_vertices + fresh,
-            last: Some(last),
-            cavity,
-        }
-    }
-}
-
 /// A flip of a hole on the beam: as small as it can be sorted by, since most are dropped. Mesh vertices ascend with those of the
 /// cavity, so that the corners of two flips of one hole compare as their hexes do.
 struct Child {
@@ -201,7 +168,7 @@ pub fn fill_avoiding(
         }
     }
     let mut search = Search { atlas, options, trail: Vec::new(), found: Vec::new(), seen: FxHashSet::default() };
-    let hole = Hole { cavity: mirror_image(&cavity), ids, n_vertices: surface.n_vertices() as u32, last: None };
+    let hole = Hole::inside(&cavity, ids, surface.n_vertices() as u32);
     // The surface itself may be in the atlas: no hex is glued then.
     search.close_with_atlas(&hole, 0);
     let mut outcome = FillOutcome { fillings: Vec::new(), cavities: 1, stop: StopReason::Finished };
@@ -261,12 +228,12 @@ impl Search<'_> {
 
     /// Tries to fill a hole from the atlas; keeps every fit that is small enough, up to the count asked for.
     fn close_with_atlas(&mut self, hole: &Hole, depth: u32) {
-        let outside = mirror_image(&hole.cavity);
-        for ball in self.atlas.balls_for(&outside) {
+        let sphere = hole.sphere();
+        for ball in self.atlas.balls_for(&sphere) {
             if depth + ball.n_hexes() as u32 > self.most_allowed() {
                 break;
             }
-            for (map, mirrored) in ball.placements(&outside) {
+            for (map, mirrored) in ball.placements(&sphere) {
                 let ids: Vec<u32> = map.iter().map(|&v| hole.ids[usize::from(v)]).collect();
                 let (mut hexes, fresh) = ball.hexes_in(&ids, mirrored, hole.n_vertices);
                 let mut at = hole.last;

@@ -61,7 +61,11 @@ impl Known {
 
     /// The smallest filling of a class.
     pub(crate) fn smallest(&self, class: ClassHash) -> Option<Ball> {
-        let state = self.states_of(class).min_by_key(|&s| (self.hexes(s), s))?;
+        self.ball(self.states_of(class).min_by_key(|&s| (self.hexes(s), s))?)
+    }
+
+    /// The ball of a state.
+    pub(crate) fn ball(&self, state: u32) -> Option<Ball> {
         Ball::replay(self.growth.flips_to(state))
     }
 
@@ -77,7 +81,7 @@ impl Known {
 
     /// Adds the states on a way outward from `start` through these classes, if there is one; returns the last.
     pub(crate) fn add_way(&mut self, start: u32, classes: &[ClassHash]) -> Option<u32> {
-        let ball = Ball::replay(self.growth.flips_to(start))?;
+        let ball = self.ball(start)?;
         let mut canonical = Canonical::new();
         let mut steps = Vec::new();
         if !find_way(&ball.boundary, classes, &mut canonical, &mut steps) {

@@ -46,6 +46,7 @@ mod exchange;
 mod flip;
 mod grow;
 mod halves;
+mod hole;
 mod inward;
 mod known;
 mod narrow_shelling;
