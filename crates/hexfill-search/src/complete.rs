@@ -241,7 +241,11 @@ fn exchange_round(known: &mut Known, targets: &[Target], balls: u64, max_hexes: 
         let search = |target: &&Target| {
             // A filling of any size is better than none: the next round makes it smaller.
             let limit = known.fewest(target.class).unwrap_or(u32::MAX);
-            smaller_filling(&target.sphere, target.class, limit, &from, balls, ctx)
+            if ctx.stop().is_some() {
+                None
+            } else {
+                smaller_filling(&target.sphere, target.class, limit, &from, balls, ctx)
+            }
         };
         let fillings: Vec<Option<Vec<Flip>>> = batch.par_iter().map(search).collect();
         for flips in fillings.into_iter().flatten() {

@@ -45,7 +45,7 @@ pub(crate) fn smaller_filling(
     let Fillings { known, atlas, membranes } = *from;
     // Each class takes a sequence of its own, and another one each round.
     let ctx = Context { progress: None, seed: ctx.seed ^ class as u64 ^ balls, ..*ctx };
-    let halves = smallest_halves(sphere, limit, &[atlas, Atlas::embedded()], membranes, known);
+    let halves = smallest_halves(sphere, limit, &[atlas, Atlas::embedded()], membranes, known, &ctx);
     let mesh = match (halves.clone(), known.smallest(class)) {
         (Some(mesh), _) => mesh,
         (None, Some(ball)) => HexMesh::try_new(ball.n_vertices as usize, &ball.hexes).ok()?,

@@ -13,7 +13,7 @@ use crate::canonical::{Canonical, relabel};
 use crate::cavity::{Cavity, Pairs, next};
 use crate::grow::class_hash;
 use crate::known::Known;
-use hexfill_mesh::{HexMesh, QuadSurface};
+use hexfill_mesh::{Context, HexMesh, QuadSurface};
 
 /// Lengths of circuits, and vertices inside a membrane at most.
 const CUTS: [(usize, usize); 5] = [(4, 0), (6, 7), (8, 6), (10, 5), (12, 4)];
@@ -71,10 +71,11 @@ pub(crate) fn smallest_halves(
     atlases: &[&Atlas],
     membranes: &Membranes,
     known: &Known,
+    ctx: &Context<'_>,
 ) -> Option<HexMesh> {
     let cuts = cuts(sphere, limit, atlases, membranes);
     let mut best = cuts.iter().take(TRIED).find_map(|cut| joined(sphere, cut, limit, atlases, None));
-    for cut in cuts.iter().take(SEARCHED) {
+    for cut in cuts.iter().take(SEARCHED).take_while(|_| ctx.stop().is_none()) {
         let limit = best.as_ref().map_or(limit, |mesh| mesh.n_hexes() as u32);
         best = joined(sphere, cut, limit, atlases, Some(known)).or(best);
     }
@@ -333,7 +334,6 @@ fn block_shared(cavity: &mut Cavity, ids: &[u32], used: &Pairs, other_ids: &[u32
 mod tests {
     use super::*;
     use hexfill_check::{Judged, Level, Options, judge};
-    use hexfill_mesh::Context;
     use hexfill_mesh::generate::{cube_surface, random_sphere, voxel_surface};
 
     fn filled(surface: &QuadSurface, limit: u32, membranes: &Membranes) -> Option<usize> {
@@ -399,7 +399,7 @@ mod tests {
         for seed in 0..4 {
             let (sphere, _) = Cavity::from_surface(&random_sphere(18, seed).unwrap()).unwrap();
             let plain = two_halves(&sphere, 200, &[&atlas], &membranes).map(|mesh| judged(&sphere, &mesh));
-            let by_ways = smallest_halves(&sphere, 200, &[&atlas], &membranes, &known);
+            let by_ways = smallest_halves(&sphere, 200, &[&atlas], &membranes, &known, &Context::default());
             let by_ways = by_ways.map(|mesh| judged(&sphere, &mesh));
             assert!(by_ways.is_some() || plain.is_none());
             assert!(by_ways <= plain || plain.is_none(), "{by_ways:?} {plain:?}");
