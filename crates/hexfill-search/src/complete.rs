@@ -186,8 +186,11 @@ pub fn complete(
         report.found += usize::from(hexes.is_some() && before.is_none());
         report.large += usize::from(hexes.is_some_and(|h| h > options.max_hexes));
     }
-    let atlas = known.to_atlas(|class| names.contains(&short_hash(class)));
-    Some((atlas.pruned(1, |_, _| true), report))
+    let one_each = |known: &Known| known.to_atlas(|class| names.contains(&short_hash(class))).pruned(1, |_, _| true);
+    // A class that got no fewer hexes keeps its filling, so that what is filled with it stays the same.
+    let mut all = Known::from_atlas(kept)?;
+    all.merge(&Known::from_atlas(&one_each(&known))?)?;
+    Some((one_each(&all), report))
 }
 
 fn targets(max_quads: usize) -> Vec<Target> {
