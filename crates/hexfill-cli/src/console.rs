@@ -57,7 +57,7 @@ impl ProgressState {
 }
 
 /// An object as JSON, the version of its keys first.
-fn versioned(value: &impl serde::Serialize) -> anyhow::Result<String> {
+pub(crate) fn versioned(value: &impl serde::Serialize) -> anyhow::Result<String> {
     let mut value = serde_json::to_value(value)?;
     let object = value.as_object_mut().expect("a report is an object");
     object.shift_insert(0, "json_version".to_owned(), JSON_VERSION.into());

@@ -3,6 +3,7 @@
 //! The work unwinds as usual, so that temporary files go and threads are joined; only the words of all panics but the
 //! first are withheld. A panic because our output has no reader any more is a quiet success, as an error of that kind is.
 
+use crate::console::versioned;
 use crate::exit::Exit;
 use std::any::Any;
 use std::io::Write;
@@ -30,8 +31,8 @@ fn ended(run: impl FnOnce() -> ExitCode) -> ExitCode {
             let code = code_of(text);
             // The flags are not parsed here: a panic may come before, or from, parsing them.
             if code == Exit::Internal && std::env::args_os().any(|word| word == "--json") {
-                let report = serde_json::json!({ "error": one_line(text), "exit_code": code as u8 });
-                let _ = writeln!(std::io::stdout(), "{report:#}");
+                let report = versioned(&serde_json::json!({ "error": one_line(text), "exit_code": code as u8 }));
+                let _ = writeln!(std::io::stdout(), "{}", report.unwrap_or_default());
             }
             code.into()
         }

@@ -19,7 +19,7 @@ const LIMITS: [&str; 8] = [
 ];
 
 /// Said to be the same again, or to hold what `info` says of a vertex, corner or edge; a `boundary` that is text is a signature.
-const SAID_ELSEWHERE: [&str; 3] = ["mended.after", "limits.KIND.first[]", "boundary"];
+const SAID_ELSEWHERE: [&str; 4] = ["mended.after", "limits.KIND.first[]", "boundary", "counts"];
 
 /// The keys of a report as the page writes them.
 fn keys(value: &Value, path: &str, all: &mut BTreeSet<String>) {
@@ -52,7 +52,7 @@ fn the_page_lists_every_key_and_no_other() {
     let (odd, crossing, open) = (sick("odd_ball.obj"), sick("crossing_boxes.obj"), sick("open_box.obj"));
     let dir = tempfile::tempdir().unwrap();
     let radial = root.join("corpus/surfaces/radial_12.obj").to_str().unwrap().to_owned();
-    let runs: [(&str, &[&[&str]]); 13] = [
+    let runs: [(&str, &[&[&str]]); 19] = [
         (
             "fill",
             &[
@@ -76,7 +76,28 @@ fn the_page_lists_every_key_and_no_other() {
         ("view", &[&["view", "a.vtu", "-o", "e.html"]]),
         ("catalog", &[&["catalog"]]),
         ("atlas stats", &[&["atlas", "stats"]]),
-        ("enumerate", &[&["enumerate", "3", "-u"]]),
+        ("atlas build", &[&["atlas", "build", "-o", "a.hxgrow", "--levels", "3"]]),
+        (
+            "atlas complete",
+            &[&[
+                "atlas",
+                "complete",
+                "b.hxgrow",
+                "-o",
+                "c.hxatlas",
+                "--levels",
+                "3",
+                "--max-quads",
+                "8",
+                "--efforts",
+                "0",
+            ]],
+        ),
+        ("atlas prune", &[&["atlas", "prune", "c.hxatlas", "-o", "d.hxatlas"]]),
+        ("enumerate", &[&["enumerate", "3", "-u"], &["enumerate", "3", "-u", "--checkpoint", "part", "--chunks", "4"]]),
+        ("enumerate merge", &[&["enumerate", "merge", "part"], &["enumerate", "show", "part"]]),
+        ("enumerate verify", &[&["enumerate", "verify", "part"]]),
+        ("enumerate show", &[&["enumerate", "show", "0 1 2 3 4 5 6 7"]]),
     ];
     for (section, commands) in runs {
         let mut seen = BTreeSet::new();

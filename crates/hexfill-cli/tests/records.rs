@@ -21,3 +21,11 @@ fn every_record_is_a_ball_with_its_boundary() {
     // Published are 72 for every sphere of at most 20 quads; the trapezohedron of 20 has 75 here, all others at most 69.
     assert!(numbers[1].0 <= 75 && numbers[1].1.is_none());
 }
+
+#[test]
+fn a_judge_that_was_stopped_refuses_nothing() {
+    let dir = tempfile::tempdir().unwrap();
+    let (code, out, err) = hexfill(dir.path(), &["records", "--verify", "--json", "--time-limit", "1ns"]);
+    assert_eq!((code, &json(&out)["exit_code"]), (3, &3.into()), "{err}");
+    assert!(json(&out)["records"].as_array().unwrap().iter().all(|row| row["verified"].is_null()), "{out}");
+}

@@ -251,11 +251,14 @@ fn edges_and_vertices(soup: &Soup, error: &SurfaceError) -> Vec<Finding> {
     .into_iter()
     .flatten()
     .collect();
+    // Where the error names its remedy there is no other.
     let other = match error {
         SurfaceError::Empty => Some(("empty", "see whether it is the right file")),
         SurfaceError::NonManifoldVertices { .. } => Some(("non-manifold-vertices", "")),
-        SurfaceError::NotOrientable { .. } => Some(("not-orientable", "")),
-        SurfaceError::IndexOutOfRange { .. } => Some(("index-out-of-range", "")),
+        SurfaceError::NotOrientable { .. } => {
+            Some(("not-orientable", "see whether a strip is glued the wrong way round"))
+        }
+        SurfaceError::IndexOutOfRange { .. } => Some(("index-out-of-range", "write the file again")),
         SurfaceError::TooLarge { .. } => Some(("too-large", "")),
         _ => None,
     };

@@ -123,7 +123,7 @@ pub struct Searched {
     pub chunks: usize,
     /// Chunks that were in the ledger already.
     pub found_done: usize,
-    /// Chunks of the whole that are finished, of all parts the folder has.
+    /// Chunks that are finished now.
     pub done: usize,
     /// Bytes of a torn last line that were dropped.
     pub dropped_bytes: usize,

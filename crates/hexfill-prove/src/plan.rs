@@ -9,7 +9,7 @@ use crate::code::code;
 use crate::cover::Cover;
 use crate::error::ProveError;
 use crate::mesh::{Mesh, signature_of};
-use crate::state::State;
+use crate::state::{MAX_VERTICES, State};
 use crate::symmetry::{Action, Subgroup, Symmetries};
 use crate::tree::{Walker, step};
 use hexfill_ledger::Chunk;
@@ -55,11 +55,10 @@ impl Problem {
         }
         // Euler: at most 2 H + 1 - Q / 2 interior vertices.
         let most = surface.n_vertices() + 2 * max_hexes + 1 - surface.n_quads() / 2;
-        if most >= crate::state::MAX_VERTICES {
+        if most >= MAX_VERTICES {
             return Err(ProveError::BadParameters {
                 why: format!(
-                    "{max_hexes} hexes may need {most} vertices, fewer than {} are possible: ask for fewer hexes",
-                    crate::state::MAX_VERTICES
+                    "{max_hexes} hexes may need {most} vertices, fewer than {MAX_VERTICES} are possible: ask for fewer hexes"
                 ),
             });
         }
@@ -162,13 +161,15 @@ impl Outcome {
     pub fn merge(&mut self, other: Self) {
         self.nodes += other.nodes;
         self.tree_sum = self.tree_sum.wrapping_add(other.tree_sum);
-        for (signature, mesh) in other.meshes {
-            // Of equal classes the smaller list stays: no order of the work shows.
-            match self.meshes.entry(signature) {
-                Entry::Vacant(slot) => drop(slot.insert(mesh)),
-                Entry::Occupied(mut slot) if mesh.hexes < slot.get().hexes => drop(slot.insert(mesh)),
-                Entry::Occupied(_) => {}
-            }
+        other.meshes.into_iter().for_each(|(signature, mesh)| self.add(signature, mesh));
+    }
+
+    /// Adds a mesh. Of equal classes the smaller list stays: no order or division of the work shows.
+    fn add(&mut self, signature: String, mesh: Mesh) {
+        match self.meshes.entry(signature) {
+            Entry::Vacant(slot) => drop(slot.insert(mesh)),
+            Entry::Occupied(mut slot) if mesh.hexes < slot.get().hexes => drop(slot.insert(mesh)),
+            Entry::Occupied(_) => {}
         }
     }
 
@@ -269,6 +270,10 @@ impl Plan {
     pub fn run(&self, chunk: Chunk, ctx: &Context<'_>) -> Result<Outcome, ProveError> {
         let mut out = Outcome::default();
         for task in self.tasks.iter().skip(chunk.index).step_by(chunk.of.max(1)) {
+            // A walker asks every few thousand states, and a task may have fewer.
+            if let Some(reason) = ctx.stop() {
+                return Err(ProveError::Stopped { reason });
+            }
             let mut walker = self.walker(task);
             walker.descend(task.path, ctx).map_err(|reason| ProveError::Stopped { reason })?;
             let walked = std::mem::take(&mut walker.walked);
@@ -277,7 +282,7 @@ impl Plan {
             for hexes in &walked.found {
                 let mesh = Mesh::new(hexes);
                 if let Some(signature) = signature_of(&self.problem.surface, &mesh)? {
-                    out.meshes.entry(signature).or_insert(mesh);
+                    out.add(signature, mesh);
                 }
             }
         }

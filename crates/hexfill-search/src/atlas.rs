@@ -108,7 +108,7 @@ impl Atlas {
         &ATLAS
     }
 
-    /// The smallest fillings known of nearly all 3-connected spheres of up to 20 quads, compiled into the library. For connectivity alone: where positions
+    /// The smallest fillings known of all 54,943 3-connected spheres of up to 20 quads, compiled into the library. For connectivity alone: where positions
     /// are wanted the [embedded](Self::embedded) atlas serves better, whose fillings have more hexes and embed more often. Made by `hexfill atlas complete`;
     /// see `record/`.
     pub fn fewest() -> &'static Self {

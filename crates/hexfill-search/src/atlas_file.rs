@@ -11,7 +11,7 @@ use crate::atlas::{Atlas, short_hash};
 use crate::atlas_packed::PACKED_MAGIC;
 use crate::flip::Flip;
 use crate::grow::{GrowOptions, Growth, LevelReport};
-use std::fs::{File, OpenOptions};
+use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use xxhash_rust::xxh3::xxh3_64;
@@ -74,6 +74,8 @@ fn io_error(path: &Path) -> impl Fn(io::Error) -> AtlasError + '_ {
 
 /// One level as the log holds it.
 struct Record {
+    /// Classes left out.
+    thinned: u64,
     parents: Vec<u32>,
     flips: Vec<Flip>,
     hashes: Vec<u64>,
@@ -83,9 +85,21 @@ struct Record {
 pub struct GrowthLog {
     file: File,
     path: PathBuf,
+    thinned: u64,
+    dropped_bytes: usize,
 }
 
 impl GrowthLog {
+    /// Classes left out on all its levels: if any, the growth proves no bound.
+    pub fn thinned(&self) -> u64 {
+        self.thinned
+    }
+
+    /// Bytes of a torn last level that were cut off.
+    pub fn dropped_bytes(&self) -> usize {
+        self.dropped_bytes
+    }
+
     /// Opens the log at `path`, or starts it, and brings the growth up to the last whole level in it.
     ///
     /// # Errors
@@ -93,27 +107,29 @@ impl GrowthLog {
     pub fn open(path: &Path, options: GrowOptions) -> Result<(Self, Growth), AtlasError> {
         let fail = io_error(path);
         let mut file = OpenOptions::new().read(true).append(true).create(true).open(path).map_err(&fail)?;
-        if file.try_lock().is_err() {
-            return Err(AtlasError::Locked { path: path.to_owned() });
+        match file.try_lock() {
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => return Err(AtlasError::Locked { path: path.to_owned() }),
+            Err(TryLockError::Error(source)) => return Err(fail(source)),
         }
         let mut growth = Growth::new(options);
         let mut bytes = Vec::new();
         file.read_to_end(&mut bytes).map_err(&fail)?;
         if bytes.len() < HEADER_BYTES {
             let header = header_bytes(growth.options());
-            if !header.starts_with(&bytes) && bytes != header[..bytes.len().min(header.len())] {
+            if !header.starts_with(&bytes) {
                 return Err(AtlasError::NotAnAtlas { path: path.to_owned() });
             }
             file.set_len(0).map_err(&fail)?;
             file.write_all(&header).map_err(&fail)?;
             file.sync_data().map_err(&fail)?;
-            return Ok((Self { file, path: path.to_owned() }, growth));
+            return Ok((Self { file, path: path.to_owned(), thinned: 0, dropped_bytes: 0 }, growth));
         }
         let given = parse_header(&bytes, path)?;
         if given != growth.options() {
             return Err(AtlasError::OtherOptions { path: path.to_owned(), given, wanted: growth.options() });
         }
-        let mut at = HEADER_BYTES;
+        let (mut at, mut thinned) = (HEADER_BYTES, 0);
         // Every flip is made again and judged legal again: a log that was edited is refused at the record it was
         // edited in.
         while let Some((record, end)) = parse_record(&bytes, at, growth.level() + 1, path)? {
@@ -121,12 +137,13 @@ impl GrowthLog {
             growth
                 .replay_level(&record.parents, &record.flips)
                 .ok_or_else(|| damaged("a flip is not legal on its parent"))?;
+            thinned += record.thinned;
             at = end;
         }
         // A torn last record: the level in flight when the process was killed.
         file.set_len(at as u64).map_err(&fail)?;
         file.seek(SeekFrom::End(0)).map_err(&fail)?;
-        Ok((Self { file, path: path.to_owned() }, growth))
+        Ok((Self { file, path: path.to_owned(), thinned, dropped_bytes: bytes.len() - at }, growth))
     }
 
     /// Appends the newest level of the growth and syncs it to disk.
@@ -149,7 +166,9 @@ impl GrowthLog {
         bytes.extend_from_slice(&sum.to_le_bytes());
         let fail = io_error(&self.path);
         self.file.write_all(&bytes).map_err(&fail)?;
-        self.file.sync_data().map_err(&fail)
+        self.file.sync_data().map_err(&fail)?;
+        self.thinned += report.thinned;
+        Ok(())
     }
 }
 
@@ -195,7 +214,7 @@ fn parse_record(bytes: &[u8], at: usize, level: u32, path: &Path) -> Result<Opti
     if u32_at(rest, 0) != level {
         return Err(damaged("levels are out of order"));
     }
-    let mut record = Record { parents: Vec::new(), flips: Vec::new(), hashes: Vec::new() };
+    let mut record = Record { thinned: u64_at(rest, 12), parents: Vec::new(), flips: Vec::new(), hashes: Vec::new() };
     for state in rest[RECORD_HEADER_BYTES..end].chunks_exact(STATE_BYTES) {
         record.parents.push(u32_at(state, 0));
         record.flips.push(Flip::from_bytes([state[4], state[5]]).ok_or_else(|| damaged("unknown flip"))?);
@@ -224,6 +243,7 @@ impl Atlas {
         parse_header(&bytes, path)?;
         let mut starts = vec![0];
         let mut all = Record {
+            thinned: 0,
             parents: vec![0],
             flips: vec![Flip::from_bytes([0, 0]).expect("kind 0 exists")],
             hashes: vec![short_hash(crate::grow::cube_class())],
@@ -270,6 +290,7 @@ mod tests {
         let mut previous_len = 0;
         for round in 0..12 {
             let (mut log, mut growth) = GrowthLog::open(&path, options).unwrap();
+            assert_eq!(log.dropped_bytes() > 0, round % 3 == 2);
             if growth.level() == 8 {
                 assert_eq!(Atlas::from_growth(&growth), whole);
                 drop(log);
@@ -295,6 +316,22 @@ mod tests {
         assert!(matches!(GrowthLog::open(&path, options), Err(AtlasError::Damaged { .. })));
         std::fs::write(&path, b"something else entirely").unwrap();
         assert!(matches!(GrowthLog::open(&path, options), Err(AtlasError::NotAnAtlas { .. })));
+    }
+
+    #[test]
+    fn a_growth_that_left_classes_out_says_so_when_it_is_resumed() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("a.hxgrow");
+        let (mut log, growth) = GrowthLog::open(&path, GrowOptions::default()).unwrap();
+        let mut growth = growth.with_beam(3);
+        while growth.level() < 6 {
+            let report = growth.grow(&Context::default());
+            log.append(&growth, &report).unwrap();
+        }
+        let thinned = log.thinned();
+        assert!(thinned > 0);
+        drop(log);
+        assert_eq!(GrowthLog::open(&path, GrowOptions::default()).unwrap().0.thinned(), thinned);
     }
 
     #[test]

@@ -87,7 +87,8 @@ impl Atlas {
         let mut below = 0..0;
         for (level, (&start, end)) in self.level_starts.iter().zip(ends).enumerate() {
             let grew = |s| if level == 0 { self.states.parent(s) == 0 } else { below.contains(&self.states.parent(s)) };
-            if start != below.end || end <= start || end as usize > n {
+            // One cube, and one alone, has no parent.
+            if start != below.end || end <= start || end as usize > n || level == 0 && end != 1 {
                 return false;
             }
             if !(start..end).all(|s| grew(s) && self.states.try_flip(s).is_some()) {

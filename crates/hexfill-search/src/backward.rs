@@ -15,7 +15,7 @@ use crate::grow::{ClassHash, class_hash};
 use crate::hole::Hole;
 use crate::known::Known;
 use crate::packed_pairs::{PackedPairs, pack};
-use hexfill_mesh::HexMesh;
+use hexfill_mesh::{Context, HexMesh};
 use rustc_hash::FxHashSet;
 
 /// Most quads of a cavity on the way: each two more make the search several times as wide.
@@ -71,8 +71,14 @@ struct Inner {
     key: (ClassHash, PackedPairs),
 }
 
-/// The best way to `target` with less than `limit` hexes.
-pub(crate) fn shorter_way(target: &Cavity, limit: u32, known: &Known, breadth: &Breadth) -> Option<Way> {
+/// The best way to `target` with less than `limit` hexes; `None` if there is none, or if the work was stopped.
+pub(crate) fn shorter_way(
+    target: &Cavity,
+    limit: u32,
+    known: &Known,
+    breadth: &Breadth,
+    ctx: &Context<'_>,
+) -> Option<Way> {
     let mut canonical = Canonical::new();
     canonical.compute(target);
     let outermost = class_hash(canonical.code());
@@ -87,6 +93,9 @@ pub(crate) fn shorter_way(target: &Cavity, limit: u32, known: &Known, breadth: &
     for depth in 1..=breadth.depth {
         let mut inside: Vec<Inner> = Vec::new();
         for (parent, hole) in beam.iter().enumerate() {
+            if ctx.stop().is_some() {
+                return None;
+            }
             for placement in legal_flips(&hole.cavity, MOST_QUADS) {
                 let cavity = apply(&hole.cavity, &placement).0;
                 canonical.compute(&cavity);

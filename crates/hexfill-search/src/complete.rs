@@ -105,9 +105,9 @@ pub struct CompleteReport {
     pub grown: usize,
     /// How many the atlas to keep had or were given, or with fewer hexes.
     pub kept: usize,
-    /// How many were found by searching backward.
+    /// How many were without a filling before the search: found backward, by halves, or by inward flips.
     pub found: usize,
-    /// How many of those have more hexes than asked for.
+    /// How many of all have more hexes than asked for.
     pub large: usize,
     /// How many have no filling.
     pub missing: usize,
@@ -129,6 +129,20 @@ impl GivenFilling {
     }
 }
 
+/// Why an atlas cannot be completed: flips that are not legal on their balls, from another version or written by something else.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum CompleteError {
+    /// In the growth.
+    #[error("the growth holds flips that are not legal")]
+    Grown,
+    /// In the atlas to keep.
+    #[error("the atlas to keep holds flips that are not legal")]
+    Kept,
+    /// In a filling that was given, by its position.
+    #[error("filling {0} of those given holds flips that are not legal")]
+    Given(usize),
+}
+
 /// A class to fill.
 struct Target {
     sphere: Cavity,
@@ -136,23 +150,27 @@ struct Target {
 }
 
 /// A packed atlas of one filling a class: of all classes of at most `max_quads` quads, as far as they were found or `given`, and of all that
-/// `kept` names, which get no more hexes than there. `None` if one of the two is no atlas of this version.
+/// `kept` names, which get no more hexes than there.
+///
+/// # Errors
+/// [`CompleteError`] says which of the three holds a flip that is not legal.
 pub fn complete(
     grown: &Atlas,
     kept: &Atlas,
     given: &[GivenFilling],
     options: &CompleteOptions,
     ctx: &Context<'_>,
-) -> Option<(Atlas, CompleteReport)> {
-    let mut known = Known::from_atlas(grown)?;
+) -> Result<(Atlas, CompleteReport), CompleteError> {
+    let mut known = Known::from_atlas(grown).ok_or(CompleteError::Grown)?;
     let targets = targets(options.max_quads);
     let fewest = |known: &Known| targets.iter().map(|t| known.fewest(t.class)).collect::<Vec<Option<u32>>>();
     let before = fewest(&known);
-    known.merge(&Known::from_atlas(kept)?)?;
+    let old = Known::from_atlas(kept).ok_or(CompleteError::Kept)?;
+    known.merge(&old).ok_or(CompleteError::Kept)?;
     // What the old atlas knew counts as known and not as found, and its classes keep at most the hexes they had: an
     // atlas never gets worse.
-    for filling in given {
-        known.add_ball(&filling.flips)?;
+    for (i, filling) in given.iter().enumerate() {
+        known.add_ball(&filling.flips).ok_or(CompleteError::Given(i))?;
     }
     let with_kept = fewest(&known);
     let gained = before.iter().zip(&with_kept).filter(|(before, now)| before != now).count();
@@ -174,11 +192,11 @@ pub fn complete(
         }
     }
     for round in 0..options.rounds {
-        if let Some(stop) = ctx.stop() {
-            report.stop = stop;
+        if report.stop != StopReason::Finished {
             break;
         }
         exchange_round(&mut known, &targets, FIRST_BALLS << (2 * round), options.max_hexes, ctx);
+        report.stop = ctx.stop().unwrap_or(StopReason::Finished);
     }
     for (target, before) in targets.iter().zip(&with_kept) {
         let hexes = known.fewest(target.class);
@@ -188,9 +206,10 @@ pub fn complete(
     }
     let one_each = |known: &Known| known.to_atlas(|class| names.contains(&short_hash(class))).pruned(1, |_, _| true);
     // A class that got no fewer hexes keeps its filling, so that what is filled with it stays the same.
-    let mut all = Known::from_atlas(kept)?;
-    all.merge(&Known::from_atlas(&one_each(&known))?)?;
-    Some((one_each(&all), report))
+    let new = Known::from_atlas(&one_each(&known)).expect("what is known are legal flips");
+    let mut all = old;
+    all.merge(&new).expect("what is known are legal flips");
+    Ok((one_each(&all), report))
 }
 
 fn targets(max_quads: usize) -> Vec<Target> {
@@ -216,7 +235,7 @@ fn shorten(known: &mut Known, targets: &[Target], breadth: &Breadth, max_hexes: 
         });
         let search = |target: &&Target| {
             let limit = known.fewest(target.class).unwrap_or(BETTER_THAN_NONE + 1);
-            if ctx.stop().is_some() { None } else { shorter_way(&target.sphere, limit, known, breadth) }
+            if ctx.stop().is_some() { None } else { shorter_way(&target.sphere, limit, known, breadth, ctx) }
         };
         // A batch is searched in what was known before it and added in order: threads do not see each other's finds,
         // so any number of them finds the same.

@@ -461,9 +461,13 @@ impl Growth {
         let mut thinned = self.beam.map_or(0, |beam| keep_the_least_blocked(&mut classes, beam));
         if let Some(limit) = memory_limit {
             let per_class = size_of::<State>() + size_of::<PackedPairs>() + 2 * size_of::<(ClassHash, u32)>();
-            let coming = |n: usize| self.memory() + (n * (per_class + size_of::<FrontierState>())) as u64;
+            // A class may bring several states.
+            let coming = |classes: &[(ClassHash, PendingClass)]| {
+                let n: usize = classes.iter().map(|(_, pending)| pending.candidates.len()).sum();
+                self.memory() + (n * (per_class + size_of::<FrontierState>())) as u64
+            };
             let mut cap = MAX_CAP;
-            while coming(classes.len()) > limit && cap > 6 {
+            while coming(&classes) > limit && cap > 6 {
                 // Thin the largest classes first: the records known pass through them least.
                 let before = classes.len();
                 classes.retain(|(_, p)| usize::from(p.n_quads) < cap);

@@ -64,7 +64,8 @@ pub fn two_halves(sphere: &Cavity, limit: u32, atlases: &[&Atlas], membranes: &M
     cuts.find_map(|cut| joined(sphere, &cut, limit, atlases, None))
 }
 
-/// [`two_halves`], and where two halves together should have fewer hexes than that, the second from a way back to a known state. Half a minute at most.
+/// [`two_halves`], and where two halves have fewer hexes on record than what came of it, the second from a way back to a known state. Half a minute at most;
+/// `None` if the work was stopped before anything was found.
 pub(crate) fn smallest_halves(
     sphere: &Cavity,
     limit: u32,
@@ -74,10 +75,14 @@ pub(crate) fn smallest_halves(
     ctx: &Context<'_>,
 ) -> Option<HexMesh> {
     let cuts = cuts(sphere, limit, atlases, membranes);
-    let mut best = cuts.iter().take(TRIED).find_map(|cut| joined(sphere, cut, limit, atlases, None));
+    let mut on_record = cuts.iter().take(TRIED).take_while(|_| ctx.stop().is_none());
+    let mut best = on_record.find_map(|cut| joined(sphere, cut, limit, atlases, None));
     for cut in cuts.iter().take(SEARCHED).take_while(|_| ctx.stop().is_none()) {
         let limit = best.as_ref().map_or(limit, |mesh| mesh.n_hexes() as u32);
-        best = joined(sphere, cut, limit, atlases, Some(known)).or(best);
+        if cut.hexes >= limit {
+            break;
+        }
+        best = joined(sphere, cut, limit, atlases, Some((known, ctx))).or(best);
     }
     best
 }
@@ -267,7 +272,13 @@ fn half(sphere: &Cavity, circuit: &[u8], left: u64, disc: &Disc, is_left: bool) 
 
 /// Both halves filled and put together with fewer than `limit` hexes, if what one uses leaves a filling of the other: one on record, or one that a way back from
 /// it leads to.
-fn joined(sphere: &Cavity, cut: &Cut<'_>, limit: u32, atlases: &[&Atlas], known: Option<&Known>) -> Option<HexMesh> {
+fn joined(
+    sphere: &Cavity,
+    cut: &Cut<'_>,
+    limit: u32,
+    atlases: &[&Atlas],
+    known: Option<(&Known, &Context<'_>)>,
+) -> Option<HexMesh> {
     let disc = cut.disc;
     for first_side in [true, false] {
         let (mut first, first_ids) = half(sphere, &cut.circuit, cut.left, disc, first_side)?;
@@ -280,8 +291,8 @@ fn joined(sphere: &Cavity, cut: &Cut<'_>, limit: u32, atlases: &[&Atlas], known:
         let n_first = ball.n_hexes() as u32;
         let spare = limit.saturating_sub(n_first);
         let on_record = || best_fit(atlases, &second, spare.saturating_sub(1)).map(|fit| placed(&fit, &second));
-        let by_way = |known| {
-            let mesh = shorter_way(&second, spare, known, &BREADTH)?.filling(known)?;
+        let by_way = |(known, ctx): (&Known, &Context<'_>)| {
+            let mesh = shorter_way(&second, spare, known, &BREADTH, ctx)?.filling(known)?;
             Some((mesh.hexes_raw(), mesh.n_vertices() as u32 - second.n_vertices() as u32))
         };
         let Some(other) = known.map_or_else(on_record, by_way) else { continue };

@@ -301,7 +301,7 @@ impl Search<'_> {
     fn children(&self, hole: &Hole, parent: u32, depth: u32, most: u32, workspace: &mut Workspace) -> Vec<Child> {
         let Workspace { canonical, name } = workspace;
         let mut children = Vec::new();
-        for placement in legal_flips(&hole.cavity, MAX_QUADS.min(hole.cavity.n_quads() + 4)) {
+        for placement in legal_flips(&hole.cavity, MAX_QUADS) {
             let (cavity, _) = apply(&hole.cavity, &placement);
             canonical.compute(&cavity);
             let hint = self.atlas.hexes_hint(class_hash(canonical.code()));

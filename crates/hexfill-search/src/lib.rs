@@ -57,7 +57,7 @@ pub use atlas::{Atlas, AtlasStats, ClassStats, Spread};
 pub use atlas_file::{AtlasError, GrowthLog};
 pub use ball::Ball;
 pub use cavity::{Cavity, MAX_QUADS, MAX_VERTICES, Pairs};
-pub use complete::{CompleteOptions, CompleteReport, GivenFilling, complete};
+pub use complete::{CompleteError, CompleteOptions, CompleteReport, GivenFilling, complete};
 pub use flip::{Flip, FlipKind, Placement, apply, is_legal, legal_flips, place};
 pub use grow::{GrowOptions, Growth, LevelReport};
 pub use halves::{Membranes, two_halves};

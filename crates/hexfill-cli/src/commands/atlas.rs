@@ -84,7 +84,7 @@ enum AtlasCommand {
     Lookup {
         /// The surface.
         surface: String,
-        /// The atlas [default: the embedded one].
+        /// The atlas [default: both of the program, the embedded one and that of smallest fillings].
         #[arg(long, value_name = "FILE")]
         atlas: Option<PathBuf>,
     },
@@ -113,10 +113,16 @@ struct BuildReport {
     classes: u64,
     states: u64,
     memory_bytes: u64,
-    /// Classes left out in this run to stay within the memory limit.
+    /// Classes left out on all levels, for the beam or the memory limit.
     thinned: u64,
     exhausted: bool,
     stopped: Option<StopReason>,
+}
+
+impl BuildReport {
+    fn exit(&self) -> Exit {
+        Exit::of_stop(self.stopped.unwrap_or(StopReason::Finished), Exit::Done)
+    }
 }
 
 /// Runs the subcommand.
@@ -124,14 +130,12 @@ pub(crate) fn run(args: &AtlasArgs, console: &Console, ctx: &Context<'_>) -> any
     match &args.command {
         AtlasCommand::Build { output, cap, levels, width, beam } => {
             let width = if *width == 0 { u32::MAX } else { *width };
-            build(
-                output,
-                GrowOptions::default().with_cap(*cap as usize).with_width(width),
-                *beam,
-                *levels,
-                console,
-                ctx,
-            )
+            let options = GrowOptions::default().with_cap(*cap as usize).with_width(width);
+            let growth = build(output, options, *beam, *levels, console, ctx)?;
+            if console.json {
+                console.print_json(&growth)?;
+            }
+            Ok(growth.exit())
         }
         AtlasCommand::Complete {
             file,
@@ -147,19 +151,29 @@ pub(crate) fn run(args: &AtlasArgs, console: &Console, ctx: &Context<'_>) -> any
             given,
         } => {
             files::check_folder(output)?;
-            let given = given.iter().map(|path| given_filling(path, ctx)).collect::<anyhow::Result<Vec<_>>>()?;
+            let fillings = given.iter().map(|path| given_filling(path, ctx));
+            let Some(given) = fillings.collect::<anyhow::Result<Option<Vec<_>>>>()? else { return Ok(Exit::Stopped) };
             files::check_distinct(&[&file.to_string_lossy(), output])?;
-            let grown =
+            let growth =
                 build(file, GrowOptions::default().with_cap(*cap as usize), Some(*beam), *levels, console, ctx)?;
-            if grown != Exit::Done {
-                return Ok(grown);
+            if growth.stopped.is_some() {
+                if console.json {
+                    console.print_json(&serde_json::json!({ "growth": growth }))?;
+                }
+                return Ok(growth.exit());
             }
             let options = CompleteOptions::default()
                 .with_max_quads(*max_quads as usize)
                 .with_max_hexes(*max_hexes)
                 .with_efforts(*efforts)
                 .with_rounds(*rounds);
-            complete_atlas(file, output, keep.as_deref(), &given, &options, console, ctx)
+            let report = complete_atlas(file, output, keep.as_deref(), &given, &options, ctx)?;
+            if console.json {
+                console.print_json(&Completed { growth, completion: &report })?;
+            } else {
+                report.print(&options, console)?;
+            }
+            Ok(report.exit())
         }
         AtlasCommand::Stats { file } => {
             let read;
@@ -197,6 +211,13 @@ pub(crate) fn run(args: &AtlasArgs, console: &Console, ctx: &Context<'_>) -> any
 }
 
 #[derive(Serialize)]
+struct Completed<'a> {
+    growth: BuildReport,
+    #[serde(flatten)]
+    completion: &'a CompletionReport,
+}
+
+#[derive(Serialize)]
 struct CompletionReport {
     file: String,
     states: usize,
@@ -212,15 +233,42 @@ struct CompletionReport {
     stopped: Option<StopReason>,
 }
 
-/// The filling that a mesh file holds.
-fn given_filling(path: &str, ctx: &Context<'_>) -> anyhow::Result<GivenFilling> {
+impl CompletionReport {
+    fn print(&self, options: &CompleteOptions, console: &Console) -> anyhow::Result<()> {
+        console.print(format!(
+            "{}: {} of {} spheres of at most {} quads filled, {} of them with more than {} hexes",
+            self.file,
+            self.classes - self.missing,
+            self.classes,
+            options.max_quads(),
+            self.large,
+            options.max_hexes()
+        ))?;
+        console.print(format!(
+            "{} grown, {} new or smaller in the atlas to keep, {} new by searching backward",
+            self.grown, self.kept, self.found
+        ))?;
+        console.print(format!("{} states, {} bytes", self.states, self.bytes))
+    }
+
+    fn exit(&self) -> Exit {
+        let all_done = self.missing + self.large == 0;
+        Exit::of_stop(self.stopped.unwrap_or(StopReason::Finished), if all_done { Exit::Done } else { Exit::No })
+    }
+}
+
+/// The filling that a mesh file holds; `None` if the work was stopped.
+fn given_filling(path: &str, ctx: &Context<'_>) -> anyhow::Result<Option<GivenFilling>> {
     let data = files::read_data(path, &InputArgs::default())?;
     let mesh = data.hex_mesh()?;
-    let is_ball = hexfill::with_judged(&data, None, |judged| is_exact_ball(judged, ctx));
+    let Some(is_ball) = hexfill::with_judged(&data, None, |judged| is_exact_ball(judged, ctx)) else {
+        return Ok(None);
+    };
     ensure!(is_ball, "{path} is no proper ball of hexes; see `hexfill check {path}`");
-    GivenFilling::of_mesh(&mesh).with_context(|| {
+    let filling = GivenFilling::of_mesh(&mesh).with_context(|| {
         format!("{path}: no order of its {} hexes was found (at most 255) whose parts all have at most {MAX_CAP} boundary quads; simplify it", mesh.n_hexes())
-    })
+    })?;
+    Ok(Some(filling))
 }
 
 fn complete_atlas(
@@ -229,16 +277,15 @@ fn complete_atlas(
     keep: Option<&Path>,
     given: &[GivenFilling],
     options: &CompleteOptions,
-    console: &Console,
     ctx: &Context<'_>,
-) -> anyhow::Result<Exit> {
+) -> anyhow::Result<CompletionReport> {
     let kept = keep.map(Atlas::read_path).transpose()?;
     let kept = kept.as_ref().unwrap_or_else(|| Atlas::embedded());
-    let Some((atlas, done)) = complete(&Atlas::read_path(file)?, kept, given, options, ctx) else {
-        bail!("{} holds flips that are not legal; delete it and build it again", file.display());
-    };
+    let (atlas, done) = complete(&Atlas::read_path(file)?, kept, given, options, ctx).with_context(|| {
+        format!("{} cannot be completed; leave out what is at fault, or build it again", file.display())
+    })?;
     files::write_file(output, |out| atlas.write_packed(out))?;
-    let report = CompletionReport {
+    Ok(CompletionReport {
         file: output.to_owned(),
         states: atlas.n_states(),
         bytes: std::fs::metadata(output)?.len(),
@@ -249,25 +296,7 @@ fn complete_atlas(
         large: done.large,
         missing: done.missing,
         stopped: (done.stop != StopReason::Finished).then_some(done.stop),
-    };
-    if console.json {
-        console.print_json(&report)?;
-    } else {
-        console.print(format!(
-            "{output}: {} of {} spheres of at most {} quads filled, {} of them with more than {} hexes",
-            report.classes - report.missing,
-            report.classes,
-            options.max_quads(),
-            report.large,
-            options.max_hexes()
-        ))?;
-        console.print(format!(
-            "{} grown, {} new or smaller in the atlas to keep, {} new by searching backward",
-            report.grown, report.kept, report.found
-        ))?;
-        console.print(format!("{} states, {} bytes", report.states, report.bytes))?;
-    }
-    Ok(Exit::of_stop(done.stop, if report.missing + report.large == 0 { Exit::Done } else { Exit::No }))
+    })
 }
 
 fn build(
@@ -277,7 +306,7 @@ fn build(
     levels: u32,
     console: &Console,
     ctx: &Context<'_>,
-) -> anyhow::Result<Exit> {
+) -> anyhow::Result<BuildReport> {
     let (mut log, mut growth) = GrowthLog::open(path, options)?;
     if let Some(beam) = beam {
         growth = growth.with_beam(beam);
@@ -285,8 +314,10 @@ fn build(
     if growth.level() > 1 {
         console.say(format!("going on from level {} ({} states)", growth.level(), growth.n_states()));
     }
+    if log.dropped_bytes() > 0 {
+        console.note(format!("a torn last level of {} bytes was dropped from {}", log.dropped_bytes(), path.display()));
+    }
     let mut stopped = None;
-    let mut thinned = 0;
     while growth.level() < levels && !growth.is_exhausted() {
         let start = Instant::now();
         let report = growth.grow(ctx);
@@ -295,7 +326,6 @@ fn build(
             break;
         }
         log.append(&growth, &report)?;
-        thinned += report.thinned;
         if console.verbose > 0 {
             console.say(format!(
                 "level {:3}: {:9} flips, {:8} states kept, {:9} classes, {:9} states, {} thinned, {:.0} flips/s, {} MB",
@@ -315,13 +345,11 @@ fn build(
         classes: growth.n_classes(),
         states: growth.n_states(),
         memory_bytes: growth.memory(),
-        thinned,
+        thinned: log.thinned(),
         exhausted: growth.is_exhausted(),
         stopped,
     };
-    if console.json {
-        console.print_json(&report)?;
-    } else {
+    if !console.json {
         console.print(format!(
             "{}: {} levels, {} classes, {} states{}",
             path.display(),
@@ -331,12 +359,13 @@ fn build(
             if report.exhausted { "; nothing is left to grow from" } else { "" }
         ))?;
     }
-    if thinned > 0 {
+    if report.thinned > 0 {
         console.note(format!(
-            "{thinned} classes were left out to stay within the beam or the memory limit: this atlas proves no bound"
+            "{} classes were left out to stay within the beam or the memory limit: this atlas proves no bound",
+            report.thinned
         ));
     }
-    match stopped {
+    match report.stopped {
         Some(StopReason::MemoryLimit) => console.say(format!(
             "the memory limit leaves no room for level {}; the same command with a larger --memory-limit goes on",
             report.levels + 1
@@ -344,7 +373,7 @@ fn build(
         Some(_) => console.say(format!("stopped; the same command goes on from level {}", report.levels)),
         None => {}
     }
-    Ok(Exit::of_stop(stopped.unwrap_or(StopReason::Finished), Exit::Done))
+    Ok(report)
 }
 
 #[derive(Serialize)]

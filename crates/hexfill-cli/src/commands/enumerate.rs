@@ -475,6 +475,17 @@ fn verify(folder: &Path, redo: usize, threads: usize, console: &Console, ctx: &C
             }
         }
     }
+    let exit = if findings.is_empty() { Exit::Done } else { Exit::No };
+    if console.json {
+        console.print_json(&json!({
+            "chunks": merged.header.chunks,
+            "chunks_checked": merged.records.len(),
+            "missing": missing,
+            "findings": findings,
+            "exit_code": exit as u8,
+        }))?;
+        return Ok(exit);
+    }
     for finding in &findings {
         console.print(finding)?;
     }
@@ -484,7 +495,7 @@ fn verify(folder: &Path, redo: usize, threads: usize, console: &Console, ctx: &C
         merged.header.chunks,
         findings.len()
     ))?;
-    Ok(if findings.is_empty() { Exit::Done } else { Exit::No })
+    Ok(exit)
 }
 
 fn show(what: &str, console: &Console) -> anyhow::Result<Exit> {

@@ -50,7 +50,7 @@ pub(crate) fn families(verify: bool, ctx: &Context<'_>) -> anyhow::Result<Vec<Fa
             published_by: None,
             note: format!("no hex joins two points of one side facet (cell `{WALL_SAFE}` of the construction)"),
             mesh_command: None,
-            verified: verify.then(|| stands(cell, ctx)),
+            verified: verify.then(|| stands(cell, ctx)).flatten(),
         },
         Family {
             problem: "each 3-connected sphere of at most 20 quads",
@@ -76,18 +76,19 @@ pub(crate) fn families(verify: bool, ctx: &Context<'_>) -> anyhow::Result<Vec<Fa
 }
 
 /// Whether the cell is a ball with its pattern's boundary, and wall-safe.
-fn stands(cell: &Cell, ctx: &Context<'_>) -> bool {
+fn stands(cell: &Cell, ctx: &Context<'_>) -> Option<bool> {
     let id = |role| cell.points.iter().position(|&r| r == role).map_or(u32::MAX, |i| i as u32);
     let quads: Vec<[u32; 4]> = cell.pattern.boundary().into_iter().map(|quad| quad.map(id)).collect();
     let hexes: Vec<[u32; 8]> = cell.hexes.iter().map(|hex| hex.map(u32::from)).collect();
     let judged = Judged::connectivity(cell.points.len(), &hexes).with_surface(&quads);
-    is_exact_ball(&judged, ctx) && cell.unsafe_pairs().is_empty()
+    Some(is_exact_ball(&judged, ctx)? && cell.unsafe_pairs().is_empty())
 }
 
-/// Whether the judge finds a proper ball with exactly the surface it is given.
-pub(super) fn is_exact_ball(judged: &Judged<'_>, ctx: &Context<'_>) -> bool {
+/// Whether the judge finds a proper ball with exactly the surface it is given; `None` if it was stopped.
+pub(super) fn is_exact_ball(judged: &Judged<'_>, ctx: &Context<'_>) -> Option<bool> {
     let report = judge(judged, &Options::default().with_up_to(Level::L3), ctx);
-    report.passed(Level::L3) && report.facts.ball == Some(Ball::Yes)
+    let is_ball = report.passed(Level::L3) && report.facts.ball == Some(Ball::Yes);
+    (is_ball || ctx.stop().is_none()).then_some(is_ball)
 }
 
 /// A row in words.

@@ -46,7 +46,12 @@ pub(crate) fn run(args: &RecordsArgs, console: &Console, ctx: &Context<'_>) -> a
     let families = families(args.verify, ctx)?;
     let mut verdicts = rows.iter().map(|row| row.verified).chain(families.iter().map(|family| family.verified));
     let stands = verdicts.all(|verified| verified != Some(false));
-    let exit = if stands { Exit::Done } else { Exit::No };
+    let mut exit = if stands { Exit::Done } else { Exit::No };
+    if args.verify
+        && let Some(stop) = ctx.stop()
+    {
+        exit = Exit::of_stop(stop, exit);
+    }
     if console.json {
         console.print_json(
             &json!({ "json_version": 1, "records": rows, "families": families, "exit_code": exit as i32 }),
@@ -75,12 +80,12 @@ fn row(entry: &Entry, mesh: &MeshData, verify: bool, ctx: &Context<'_>) -> anyho
         needed: record.needed(),
         mesh_command: format!("hexfill catalog show {name} --mesh {name}.json"),
         bound_command: record.exhausted.map(|most| format!("hexfill search :{name} --max-hexes {most}")),
-        verified: verify.then(|| stands(mesh, &problem, ctx)),
+        verified: verify.then(|| stands(mesh, &problem, ctx)).flatten(),
     })
 }
 
-/// Whether the judge finds the stored mesh to be a ball that fills the problem's surface.
-fn stands(mesh: &MeshData, problem: &Problem, ctx: &Context<'_>) -> bool {
+/// Whether the judge finds the stored mesh to be a ball that fills the problem's surface; `None` if it was stopped.
+fn stands(mesh: &MeshData, problem: &Problem, ctx: &Context<'_>) -> Option<bool> {
     hexfill::with_judged(mesh, Some(problem), |judged| is_exact_ball(judged, ctx))
 }
 

@@ -49,6 +49,9 @@ pub(crate) const MOST_LAID: usize = 2500;
 /// What a sweep leaves is stirred until it closes up to so many quads; beyond, few such meshes have valid positions, so hexes are laid there first.
 const MOST_STIRRED: usize = 100;
 
+/// Meshes whose last bad hexes are mended, one after the other until one is valid.
+const MOST_MENDED: usize = 4;
+
 /// Pillows are put into meshes of surfaces of at most so many quads.
 const MOST_PILLOWED: usize = 160;
 
@@ -80,6 +83,7 @@ pub(crate) fn fill_best(
         best: None,
         seen: Vec::new(),
         tangled: None,
+        nearly: Vec::new(),
         hopeless: None,
     };
     trial.look_up()?;
@@ -110,11 +114,13 @@ struct Trial<'a> {
     seen: Vec<Candidate>,
     /// The shelled mesh nearest to valid positions, while none has any: bad corners first, then hexes.
     tangled: Option<Tangled>,
+    /// The laid meshes without valid positions.
+    nearly: Vec<Tangled>,
     /// Why no work is spent beyond the first trials, once that was asked.
     hopeless: Option<Option<Hopeless>>,
 }
 
-/// A shelled mesh whose embedding failed.
+/// A mesh whose embedding failed.
 struct Tangled {
     /// Hexes with a corner that is not positive.
     bad: usize,
@@ -288,21 +294,34 @@ impl<'a> Trial<'a> {
         Ok(())
     }
 
-    /// Puts pillows round the last hexes of the best mesh that are not valid, if only a few are left.
+    /// Puts pillows round the last hexes that are not valid, if only a few are left: of the best mesh, then of other laid ones.
     fn mend(&mut self) -> Result<(), FillError> {
         let surface = &self.problem.surface;
         let is_worth = self.class() == Some(2) && surface.n_quads() <= MOST_CONSTRUCTED && self.ctx.stop().is_none();
         let is_asked = self.options.effort != Effort::Fast && self.options.layers.is_none();
-        let Some(Leader { filled, placed, .. }) = self.best.as_ref().filter(|_| is_worth && is_asked) else {
+        if !is_worth || !is_asked {
             return Ok(());
-        };
-        let is_small = |mesh: &HexMesh| mesh.n_hexes() as u64 <= u64::from(self.options.max_hexes);
-        let made = mended(&filled.mesh, &placed.points, surface, &self.early).filter(|(mesh, ..)| is_small(mesh));
-        self.result.tried.push(Attempt::Mending { found: made.is_some() });
-        let Some((mesh, points, origin)) = made else { return Ok(()) };
-        verify(surface, &mesh, filled.route)?;
-        let mended = Filled { start: Some(points), ..filled.remade(Maker::PillowsBetween, mesh, &origin) };
-        self.consider_from(mended, false)
+        }
+        let best = self.best.as_ref().map(|leader| (leader.filled.clone(), leader.placed.points.clone()));
+        let is_best = |mesh: &HexMesh| best.as_ref().is_some_and(|(filled, _)| filled.mesh.hexes() == mesh.hexes());
+        // Which mesh can be mended is luck where two or three needles keep a hex bad each: so the next best are tried, too.
+        self.nearly.sort_by_key(|t| (t.bad, t.filled.mesh.n_hexes()));
+        let others = self.nearly.drain(..).filter(|t| !is_best(&t.filled.mesh)).map(|t| (t.filled, t.points));
+        let all: Vec<_> = best.clone().into_iter().chain(others.take(MOST_MENDED - 1)).collect();
+        for (filled, points) in all {
+            let is_small = |mesh: &HexMesh| mesh.n_hexes() as u64 <= u64::from(self.options.max_hexes);
+            let made = mended(&filled.mesh, &points, surface, &self.early).filter(|(mesh, ..)| is_small(mesh));
+            self.result.tried.push(Attempt::Mending { found: made.is_some() });
+            if let Some((mesh, points, origin)) = made {
+                verify(surface, &mesh, filled.route)?;
+                let mended = Filled { start: Some(points), ..filled.remade(Maker::PillowsBetween, mesh, &origin) };
+                self.consider_from(mended, false)?;
+            }
+            if self.class() != Some(2) || self.ctx.stop().is_some() {
+                break;
+            }
+        }
+        Ok(())
     }
 
     /// Puts pillows into the shelled mesh that is nearest to valid positions, if none has any. Only on small surfaces: the work grows with the mesh.
@@ -469,6 +488,10 @@ impl<'a> Trial<'a> {
                 // Fewest bad corners first, as pillows mend corners; then fewest hexes, as each pillow brings more.
                 self.tangled = Some(Tangled { bad, filled: filled.clone(), points: placed.points.clone() });
             }
+        }
+        if filled.route == Route::Laying && !placed.is_certified() {
+            let bad = placed.cells.iter().filter(|c| !c.valid).count();
+            self.nearly.push(Tangled { bad, filled: filled.clone(), points: placed.points.clone() });
         }
         let rank = rank(&filled, &placed, prefer, self.boundary.len());
         let outcome = if placed.is_certified() { Outcome::Certified(placed.worst()) } else { Outcome::NotCertified };

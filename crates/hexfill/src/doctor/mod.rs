@@ -9,6 +9,7 @@ use crate::info::existence::ExistenceInfo;
 use crate::info::limits::{self, LimitsInfo};
 use crate::problem::Problem;
 use crate::problem::size::at_ordinary_size;
+use crate::regions::{has_regions, regions};
 use cure::soup;
 use hexfill_construct::existence as existence_of;
 use hexfill_doctor::{Finding, Findings, Severity, examine};
@@ -56,7 +57,9 @@ pub fn doctor(name: &str, data: &MeshData) -> Diagnosis {
         };
     }
     let (mut notes, mut existence, mut limits) = (data.notes.clone(), None, None);
-    if let Ok(problem) = Problem::from_data(name, data) {
+    let read = Problem::from_data(name, data);
+    let is_walled = read.is_err() && has_regions(data, &read) && look_at_regions(name, data, &mut findings);
+    if let Ok(problem) = read {
         notes = problem.notes().to_vec();
         let at = problem.points.as_deref().map(at_ordinary_size);
         let found = existence_of(&problem.surface, at.as_deref());
@@ -73,6 +76,70 @@ pub fn doctor(name: &str, data: &MeshData) -> Diagnosis {
         existence = Some(ExistenceInfo::from(&found));
         limits = at.and_then(|points| limits::describe(&problem.surface, &points));
     }
-    let can_be_filled = existence.is_some() && findings.worst() != Some(Severity::Fatal);
+    let can_be_filled = (existence.is_some() || is_walled) && findings.worst() != Some(Severity::Fatal);
     Diagnosis { findings, notes, existence, limits, can_be_filled }
+}
+
+/// Edges in three or more faces are no fault where the faces are walls between regions, each a closed surface of its own: then every region is asked
+/// whether it has a hex mesh. `false` if they are no such walls.
+fn look_at_regions(name: &str, data: &MeshData, findings: &mut Findings) -> bool {
+    let Ok(regions) = regions(name, data) else { return false };
+    if regions.is_empty() {
+        return false;
+    }
+    for finding in findings.findings.iter_mut().filter(|f| f.kind == "non-manifold-edges") {
+        finding.kind = "walls";
+        finding.severity = Severity::Remark;
+        finding.text += &format!(", walls of {} region{}", regions.len(), if regions.len() == 1 { "" } else { "s" });
+        finding.remedy = "each is filled by itself".to_owned();
+    }
+    for (i, region) in regions.iter().enumerate() {
+        let at = region.problem.points.as_deref().map(at_ordinary_size);
+        let found = existence_of(&region.problem.surface, at.as_deref());
+        if found.is_none() {
+            findings.findings.push(Finding {
+                kind: "no-hex-mesh",
+                severity: Severity::Fatal,
+                count: 1,
+                first: Vec::new(),
+                text: format!("region {} of {} has no hex mesh: {found}", i + 1, regions.len()),
+                remedy: "change its outer quads, or cut every quad of the file into four".to_owned(),
+            });
+        }
+    }
+    findings.not_examined = None;
+    true
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn walls_are_no_fault_unless_a_region_has_no_hex_mesh() {
+        // Two cubes that share a wall.
+        let points = (0..12).map(|v| [v % 3, v / 3 % 2, v / 6].map(f64::from)).collect();
+        let mut quads = vec![[0, 3, 9, 6], [1, 4, 10, 7], [2, 5, 11, 8]];
+        for x in 0..2 {
+            let [a, b] = [x, x + 1];
+            quads.extend([[a, b, b + 3, a + 3], [a + 6, b + 6, b + 9, a + 9]]);
+            quads.extend([[a, b, b + 6, a + 6], [a + 3, b + 3, b + 9, a + 9]]);
+        }
+        let mut data = MeshData::from_quads(points, quads);
+        let found = doctor("two cubes", &data);
+        assert!(found.can_be_filled && found.findings.not_examined.is_none());
+        let kinds = |found: &Diagnosis| found.findings.findings.iter().map(|f| f.kind).collect::<Vec<_>>();
+        assert_eq!(kinds(&found), ["walls"]);
+        // Two quads of the first become three round the middle of their edge: an odd number there.
+        data.points.push([0.5, 0.0, 0.0]);
+        data.quads.retain(|quad| ![[0, 1, 4, 3], [0, 1, 7, 6]].contains(quad));
+        data.quads.extend([[0, 3, 4, 12], [4, 1, 7, 12], [7, 6, 0, 12]]);
+        let found = doctor("two solids", &data);
+        assert!(!found.can_be_filled);
+        assert_eq!(kinds(&found), ["walls", "no-hex-mesh"]);
+        assert!(found.findings.findings[1].text.starts_with("region 1 of 2 has no hex mesh: the surface has 7 quads"));
+        // A wall that ends is one.
+        data.quads.truncate(data.quads.len() - 1);
+        assert!(!doctor("open", &data).can_be_filled);
+    }
 }

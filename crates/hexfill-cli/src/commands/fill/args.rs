@@ -72,7 +72,7 @@ pub(crate) struct FillArgs {
     /// Most quads a ball may have while growing towards the surface.
     #[arg(long, default_value_t = 24, value_name = "N")]
     pub(super) cap: usize,
-    /// How many cavities inward flips may look at before the next strategy has its turn.
+    /// Most cavities that inward flips look at before the next strategy has its turn; where a certified mesh is wanted, 30,000 (--fast: 1,000) at most.
     #[arg(long, default_value_t = 1_000_000, value_name = "N")]
     pub(super) inward_cavities: u64,
     /// How many of these cavities are kept on each level: more find more of the meshes --count asks for.
@@ -109,7 +109,7 @@ pub(crate) struct FillArgs {
 pub(super) enum StrategyArg {
     /// Atlas, shelling, laying, inward flips, construction: the best mesh of them (see --prefer).
     Auto,
-    /// Shelling only: the surface is swept inward by its own dual curves.
+    /// Shelling: the surface is swept inward by its own dual curves; laying where no shelled mesh is certified.
     Shell,
     /// Atlas, inward flips, then growth towards the surface until --time-limit.
     Atlas,
