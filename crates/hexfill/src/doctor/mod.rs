@@ -130,14 +130,14 @@ mod tests {
         assert!(found.can_be_filled && found.findings.not_examined.is_none());
         let kinds = |found: &Diagnosis| found.findings.findings.iter().map(|f| f.kind).collect::<Vec<_>>();
         assert_eq!(kinds(&found), ["walls"]);
-        // Two quads of the first become three round the middle of their edge: an odd number there.
+        // Two quads of the first become three round the middle of their edge, one of them bent: an odd number there.
         data.points.push([0.5, 0.0, 0.0]);
         data.quads.retain(|quad| ![[0, 1, 4, 3], [0, 1, 7, 6]].contains(quad));
         data.quads.extend([[0, 3, 4, 12], [4, 1, 7, 12], [7, 6, 0, 12]]);
         let found = doctor("two solids", &data);
         assert!(!found.can_be_filled);
-        assert_eq!(kinds(&found), ["walls", "no-hex-mesh"]);
-        assert!(found.findings.findings[1].text.starts_with("region 1 of 2 has no hex mesh: the surface has 7 quads"));
+        assert_eq!(kinds(&found), ["walls", "reflex-quads", "no-hex-mesh"]);
+        assert!(found.findings.findings[2].text.starts_with("region 1 of 2 has no hex mesh: the surface has 7 quads"));
         // A wall that ends is one.
         data.quads.truncate(data.quads.len() - 1);
         assert!(!doctor("open", &data).can_be_filled);
