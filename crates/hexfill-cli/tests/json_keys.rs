@@ -18,13 +18,13 @@ const LIMITS: [&str; 8] = [
     "reflex_corners",
 ];
 
-/// Said to be the same again, or to hold what `info` says of a vertex, corner or edge; a `boundary` that is text is a signature.
+/// Objects said to be the same again, or to hold what `info` says of a vertex, corner or edge; a `boundary` that is text is a signature.
 const SAID_ELSEWHERE: [&str; 4] = ["mended.after", "limits.KIND.first[]", "boundary", "counts"];
 
 /// The keys of a report as the page writes them.
 fn keys(value: &Value, path: &str, all: &mut BTreeSet<String>) {
     match value {
-        _ if SAID_ELSEWHERE.contains(&path) && !value.is_string() => drop(all.insert(path.to_owned())),
+        Value::Object(_) if SAID_ELSEWHERE.contains(&path) => drop(all.insert(path.to_owned())),
         Value::Object(object) => object.iter().for_each(|(key, value)| {
             let key = if LIMITS.contains(&key.as_str()) { "KIND" } else { key };
             let key = if key.parse::<i32>().is_ok() { "N" } else { key };

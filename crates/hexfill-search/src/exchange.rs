@@ -1,7 +1,8 @@
 //! Smaller fillings by exchanging balls: what the atlas knows of small balls makes its own large fillings smaller.
 //!
 //! A filling with too many hexes is put together anew from [two halves](crate::halves), one of them searched backward, where that takes fewer, then [simplified](crate::simplify()), its
-//! balls looked up in all that is known, larger cavities and steps included, and [shelled anew](crate::narrow_shelling). A class without a filling starts
+//! balls looked up in all that is known, larger cavities and steps included. Then it wanders: exchanges lead to other fillings with as many hexes, and
+//! balls of each are [searched backward](crate::refill). What comes out is [shelled anew](crate::narrow_shelling). A class without a filling starts
 //! from halves or from one found by [inward flips](crate::fill_from_atlas), however large. Fillings made smaller join what is known, so the next round meets
 //! them.
 //!
@@ -15,11 +16,15 @@ use crate::halves::{Membranes, smallest_halves};
 use crate::inward::{FillOptions, fill_from_atlas};
 use crate::known::Known;
 use crate::narrow_shelling::narrow_shelling;
+use crate::refill::refilled;
 use crate::simplify::{Collapse, SimplifyOptions, simplify};
 use hexfill_mesh::{Context, HexMesh};
 
 /// Most quads of a ball.
 const BALL_QUADS: usize = 26;
+/// Balls exchanged in a step of a walk, and balls searched backward.
+const STEP_BALLS: u64 = 1_000;
+const STEP_REFILLED: usize = 40;
 /// Cavities looked at for a first filling.
 const CAVITIES: u64 = 300_000;
 
@@ -51,11 +56,24 @@ pub(crate) fn smaller_filling(
         (None, Some(ball)) => HexMesh::try_new(ball.n_vertices as usize, &ball.hexes).ok()?,
         (None, None) => any_filling(sphere, atlas, &ctx)?,
     };
-    let options = SimplifyOptions::default().with_max_quads(BALL_QUADS);
-    let made = simplify(&mesh, atlas, &options.with_balls(balls).with_collapse(Collapse::Nothing), &ctx);
-    let exchanged = (made.report.after < limit as usize).then(|| narrow_shelling(&made.mesh)).flatten();
+    let options = SimplifyOptions::default().with_max_quads(BALL_QUADS).with_collapse(Collapse::Nothing);
+    let made = simplify(&mesh, atlas, &options.with_balls(balls), &ctx).mesh;
+    let made = wandered(made, from, balls, &options.wandering().with_balls(STEP_BALLS), &ctx);
+    let exchanged = (made.n_hexes() < limit as usize).then(|| narrow_shelling(&made)).flatten();
     // What exchanges bring may need larger boundaries than an atlas has.
     exchanged.or_else(|| narrow_shelling(&halves?))
+}
+
+/// The smallest mesh met on a walk through meshes with as many hexes, on which so many balls are exchanged and a share of them searched backward.
+fn wandered(mut mesh: HexMesh, from: &Fillings<'_>, balls: u64, step: &SimplifyOptions, ctx: &Context<'_>) -> HexMesh {
+    for i in 0..balls / STEP_BALLS {
+        let ctx = Context { seed: ctx.seed ^ i << 40, ..*ctx };
+        while let Some(smaller) = refilled(&mesh, STEP_REFILLED, from.known, &ctx) {
+            mesh = smaller;
+        }
+        mesh = simplify(&mesh, from.atlas, step, &ctx).mesh;
+    }
+    mesh
 }
 
 fn any_filling(sphere: &Cavity, atlas: &Atlas, ctx: &Context<'_>) -> Option<HexMesh> {

@@ -51,6 +51,7 @@ mod inward;
 mod known;
 mod narrow_shelling;
 mod packed_pairs;
+mod refill;
 mod simplify;
 
 pub use atlas::{Atlas, AtlasStats, ClassStats, Spread};

@@ -34,7 +34,8 @@ pub use gate::Gate;
 use hexfill_mesh::{Context, HexMesh, StopReason, VertexId};
 pub(crate) use live::LiveMesh;
 use live::NONE;
-use offer::{Offer, Search, Worker, sequence};
+pub(crate) use offer::sequence;
+use offer::{Offer, Search, Worker};
 use rayon::prelude::*;
 pub(crate) use region::Region;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -56,11 +57,12 @@ pub struct SimplifyOptions {
     max_hexes: usize,
     heat: u32,
     collapse: Collapse,
+    wander: bool,
 }
 
 impl Default for SimplifyOptions {
     fn default() -> Self {
-        Self { balls: 100_000, max_quads: 24, max_hexes: 100, heat: 970, collapse: Collapse::All }
+        Self { balls: 100_000, max_quads: 24, max_hexes: 100, heat: 970, collapse: Collapse::All, wander: false }
     }
 }
 
@@ -95,6 +97,12 @@ impl SimplifyOptions {
     #[must_use]
     pub fn with_collapse(self, collapse: Collapse) -> Self {
         Self { collapse, ..self }
+    }
+
+    /// Return the last of the smallest meshes met and not the first: another one of the same size where none is smaller.
+    #[must_use]
+    pub(crate) fn wandering(self) -> Self {
+        Self { wander: true, ..self }
     }
 
     /// How many balls to grow.
@@ -275,7 +283,8 @@ fn exchange_balls(
         }
         report.balls += size;
         // A copy costs time in proportion to the mesh: of large meshes only clear progress is kept.
-        if live.n_hexes() + live.n_hex_slots() / 4096 < best.hexes.len() {
+        let is_smaller = live.n_hexes() + live.n_hex_slots() / 4096 < best.hexes.len();
+        if is_smaller || options.wander && live.n_hexes() == best.hexes.len() && live.exchanges() > seen {
             best = Snapshot::of(&live);
         }
         let total = (options.balls < u64::MAX).then_some(options.balls);
@@ -287,7 +296,7 @@ fn exchange_balls(
     if live.n_hexes() < best.hexes.len() {
         best = Snapshot::of(&live);
     }
-    if best.hexes.len() >= mesh.n_hexes() {
+    if best.hexes.len() + usize::from(!options.wander) > mesh.n_hexes() {
         let ids = (0..mesh.n_vertices() as u32).collect();
         return (Simplified { report, ..Simplified::unchanged(mesh) }, ids);
     }
