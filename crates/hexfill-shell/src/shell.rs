@@ -10,7 +10,7 @@ use crate::deviation::{Deviation, deviation};
 use crate::front::Front;
 use crate::lift::{CoarseMesh, lift};
 use crate::polycube::polycube;
-use crate::solve::solve;
+use crate::solve::{Sweep, solve};
 use crate::stage::Stage;
 use crate::stir::stir_front;
 use crate::sweep::sweep_front;
@@ -131,8 +131,9 @@ const RESIDUALS: usize = 4;
 const STIRRING: u32 = 20;
 /// Meshes that cost less give every edge what it wants.
 const PERFECT: f32 = 1e-3;
-/// Surfaces of more quads are not swept by flips without compression too.
+/// Surfaces of more quads are not swept by flips without compression too, nor by layers.
 const MOST_FINE: usize = 20_000;
+const MOST_FINE_LAYERS: usize = 2_000;
 
 /// Sweeps a surface inward. `points`: one position per vertex of the surface, outward orientation; without them every edge is
 /// taken for flat.
@@ -169,19 +170,18 @@ pub fn shell(
     let wanted = wanted_hexes(surface, points);
     let (coarse, fine) = (Arc::new(compress(surface, &wanted)), Arc::new(uncompressed(surface, &wanted)));
     let shared = points.map(Arc::from);
-    let cells = develop(surface, &wanted, points).and_then(|d| polycube(surface, &d));
+    // A box is one cube, however many quads it has: cutting that one takes less than finding all its cells.
+    let is_box = coarse.surface.n_quads() == 6;
+    let developed = if is_box { None } else { develop(surface, &wanted, points) };
+    let cells = developed.and_then(|d| polycube(surface, &d));
     let shelling = Shelling { coarse_quads: coarse.surface.n_quads(), left: usize::MAX, ..Shelling::default() };
     let mut keeper = Keeper { surface, points, shared, coarse: &coarse, fine: &fine, options, shelling };
     for &pillows in &options.pillows {
         if let (0, Some(hexes)) = (pillows, &cells) {
             keeper.keep(&fine, 0, vec![Glued::at_once(Stage::Grid, hexes.clone())], ctx);
             keeper.shelling.left = 0;
-            if keeper.shelling.meshes.iter().any(|m| m.cost < PERFECT) {
-                // All edges bend by right angles: nothing is better than the cells of the grid.
-                break;
-            }
         }
-        if ctx.stop().is_some() {
+        if keeper.shelling.is_perfect() || ctx.stop().is_some() {
             break;
         }
         if surface.n_components() > 1 {
@@ -191,6 +191,13 @@ pub fn shell(
         }
     }
     keeper.shelling
+}
+
+impl Shelling {
+    /// Whether a mesh gives every edge the hexes its angle wants: nothing is better then.
+    fn is_perfect(&self) -> bool {
+        self.meshes.iter().any(|m| m.cost < PERFECT)
+    }
 }
 
 /// The surface in both sizes, and the meshes that are worth keeping.
@@ -214,6 +221,9 @@ impl Keeper<'_> {
             return;
         }
         let is_compressed = self.coarse.surface.n_quads() < self.surface.n_quads();
+        if is_compressed && pillows == 0 && self.surface.genus() == 0 {
+            self.layer_fine(ctx);
+        }
         match self.points {
             Some(given) if self.surface.genus() > 0 => self.sweep_cut_open(given, pillows, ctx),
             _ if found == 0 && is_compressed => {
@@ -222,6 +232,22 @@ impl Keeper<'_> {
                 self.keep(self.fine, pillows, meshes, ctx);
             }
             _ => (),
+        }
+    }
+
+    /// Sweeps the surface as it is by layers and keeps what is closer to the hexes its edges want than anything of the compressed one. A chord that stands
+    /// for several may have to end in two places: on a shaft that steps in, the rings of the wide end go partly to the step and partly to the narrow end.
+    fn layer_fine(&mut self, ctx: &Context<'_>) {
+        let least = self.shelling.meshes.iter().map(|m| m.cost).fold(f32::INFINITY, f32::min);
+        if self.shelling.is_perfect() || self.surface.n_quads() > MOST_FINE_LAYERS {
+            return;
+        }
+        let layered = Start::new(self.fine, 0).by_layers(self.options, ctx).0;
+        let measured = layered.into_iter().filter_map(|m| deviation(self.fine, &m.hexes).map(|d| (d, m)));
+        let best = measured.min_by(|(a, _), (b, _)| a.cost.total_cmp(&b.cost).then(a.fine_hexes.cmp(&b.fine_hexes)));
+        if let Some((d, glued)) = best.filter(|(d, _)| d.cost < least) {
+            let lifted = self.lifted(self.fine, &glued, d.cost, 0, ctx);
+            self.shelling.meshes.extend(lifted);
         }
     }
 
@@ -356,17 +382,7 @@ impl<'a> Start<'a> {
 
     /// Complete coarse meshes, by both engines.
     fn complete(&self, options: &ShellOptions, left: &mut usize, ctx: &Context<'_>) -> Vec<Glued> {
-        let n = self.void.quads.len() as u64;
-        let restarts = (RESTART_WORK / (n * n).max(1)).clamp(MIN_RESTARTS.min(options.restarts), options.restarts);
-        let sweeps = solve(&self.void, restarts, ctx);
-        let (complete, partial): (Vec<_>, Vec<_>) = sweeps.into_iter().partition(|s| s.is_complete());
-        let mut meshes: Vec<Glued> = complete
-            .into_iter()
-            .map(|s| {
-                let n = s.void.hexes.len();
-                self.glued(s.void.hexes, n, n)
-            })
-            .collect();
+        let (mut meshes, partial) = self.by_layers(options, ctx);
         if !meshes.is_empty() {
             *left = 0;
         }
@@ -378,6 +394,19 @@ impl<'a> Start<'a> {
             partial.into_iter().take(CONTINUED).filter_map(|s| s.void.to_wanting_front(&self.quads)).collect();
         meshes.extend(self.by_flips(options, &fronts, left, ctx));
         meshes
+    }
+
+    /// Complete coarse meshes by layers, and the sweeps that got stuck.
+    fn by_layers(&self, options: &ShellOptions, ctx: &Context<'_>) -> (Vec<Glued>, Vec<Sweep>) {
+        let n = self.void.quads.len() as u64;
+        let restarts = (RESTART_WORK / (n * n).max(1)).clamp(MIN_RESTARTS.min(options.restarts), options.restarts);
+        let sweeps = solve(&self.void, restarts, ctx);
+        let (complete, partial): (Vec<_>, Vec<_>) = sweeps.into_iter().partition(Sweep::is_complete);
+        let glued = |s: Sweep| {
+            let n = s.void.hexes.len();
+            self.glued(s.void.hexes, n, n)
+        };
+        (complete.into_iter().map(glued).collect(), partial)
     }
 
     /// Complete coarse meshes by flips, from the start and from `others`.
@@ -453,4 +482,64 @@ fn close_residual(front: &Front, ctx: &Context<'_>) -> Vec<Hexes> {
     let options = SweepOptions { atlas: Some(Atlas::embedded()), ..SweepOptions::default() };
     stir_front(&mut stirred, STIRRING, &options, ctx);
     [front.closed(ctx), stirred.closed(ctx)].into_iter().flatten().map(|state| state.hexes().to_vec()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compress::compress;
+
+    /// A round shaft with an O-grid section, four quads in the core and `rings` rings of eight, the outermost of which ends `low` layers up: its surface, and
+    /// the number of hexes of its sweep.
+    fn stepped_shaft(rings: u32, low: u32, high: u32) -> (QuadSurface, Vec<[f64; 3]>, usize) {
+        let per_level = 9 + 8 * rings;
+        let mut points = Vec::new();
+        for z in 0..=high {
+            let core = (0..9).map(|i| [f64::from(i % 3) - 1.0, f64::from(i / 3) - 1.0].map(|x| 0.6 * x));
+            let ring = (0..8 * rings).map(|i| {
+                let turn = std::f64::consts::TAU * f64::from(i % 8 + 5) / 8.0;
+                [turn.cos(), turn.sin()].map(|x| f64::from(2 + i / 8) * x)
+            });
+            points.extend(core.chain(ring).map(|[x, y]| [x, y, f64::from(z)]));
+        }
+        // Round the core from its first corner on, where the rings begin as well.
+        let round =
+            |ring: u32, i: u32| if ring == 0 { [0, 1, 2, 5, 8, 7, 6, 3][i as usize % 8] } else { 1 + 8 * ring + i % 8 };
+        let core = [[0, 1, 4, 3], [1, 2, 5, 4], [3, 4, 7, 6], [4, 5, 8, 7]].map(|q| (0, q));
+        let outside = (0..rings).flat_map(|r| {
+            (0..8).map(move |i| (r + 1, [round(r, i), round(r + 1, i), round(r + 1, i + 1), round(r, i + 1)]))
+        });
+        let section: Vec<(u32, [u32; 4])> = core.into_iter().chain(outside).collect();
+        let mut hexes = Vec::new();
+        for z in 0..high {
+            for (_, q) in section.iter().filter(|(ring, _)| z < low || *ring < rings) {
+                let at = |i: usize| q[i % 4] + per_level * (z + i as u32 / 4);
+                hexes.push(std::array::from_fn(at));
+            }
+        }
+        let n_hexes = hexes.len();
+        let mesh = HexMesh::try_new(points.len(), &hexes).unwrap();
+        let quads = mesh.boundary_quads_raw();
+        // The vertices of the surface alone, in their order.
+        let mut number = vec![u32::MAX; points.len()];
+        let on: Vec<usize> = (0..points.len()).filter(|&v| mesh.boundary_vertices()[v]).collect();
+        on.iter().enumerate().for_each(|(i, &v)| number[v] = i as u32);
+        let quads: Vec<[u32; 4]> = quads.iter().map(|q| q.map(|v| number[v as usize])).collect();
+        let surface = QuadSurface::try_new(on.len(), &quads).unwrap();
+        (surface, on.into_iter().map(|v| points[v]).collect(), n_hexes)
+    }
+
+    #[test]
+    fn rings_that_end_in_two_places_are_swept_one_by_one() {
+        for (rings, low, high) in [(2, 2, 4), (3, 1, 3)] {
+            let (surface, points, known) = stepped_shaft(rings, low, high);
+            let wanted = wanted_hexes(&surface, Some(&points));
+            let coarse = compress(&surface, &wanted);
+            // The rings of the wide end are one chord of the compressed surface.
+            assert!(coarse.length.iter().any(|&m| m == rings), "{:?}", coarse.length);
+            let made = shell(&surface, Some(&points), &ShellOptions::default(), &Context::default());
+            let best = made.meshes.iter().min_by(|a, b| a.cost.total_cmp(&b.cost)).unwrap();
+            assert_eq!((best.mesh.n_hexes(), best.pillows), (known, 0));
+        }
+    }
 }
