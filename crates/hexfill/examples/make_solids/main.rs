@@ -3,7 +3,8 @@
 //! KIND is `solids` (some 30 solids with a known good hex mesh), `voxels` (200 random ones of genus 0), `holes` (100 with tunnels and
 //! cavities), `balls` (cubed spheres and ellipsoids), `cut` (triangulated spheres cut into quads), `radial` (radial graphs), `smooth`
 //! (voxel solids refined and smoothed) or `mixed` (quad-dominant surfaces refined, with self-crossing chords); all these by default. `many`
-//! is 1,000 random surfaces of 30 to 300 quads of all these kinds, without known meshes. Each surface is `KIND_NAME.obj`; its known mesh, if there is one, is `reference/KIND_NAME.vtk`, whose first
+//! is 1,000 random surfaces of 30 to 300 quads of all these kinds, `canonical` 1,000 random spheres of 18 to 24 quads on their canonical polyhedra, both without
+//! known meshes. Each surface is `KIND_NAME.obj`; its known mesh, if there is one, is `reference/KIND_NAME.vtk`, whose first
 //! vertices are those of the surface. `references.json` says for each file its kind, quads, and the reference's hexes and
 //! certified scaled Jacobian. The same folder comes out everywhere, up to the last bits of sines.
 
@@ -17,6 +18,8 @@ mod voxels;
 use hexfill::Context;
 use hexfill::io::{MeshData, write_path};
 use hexfill::unstable::check::{Judged, Level, Options, judge};
+use hexfill::unstable::embed::canonical_polyhedron;
+use hexfill_mesh::generate::random_sphere;
 use serde_json::{Map, Value, json};
 use solid::Solid;
 use std::error::Error;
@@ -148,6 +151,14 @@ fn make(kind: &str, folder: &mut Folder) -> Result<(), Box<dyn Error>> {
             for seed in 0..1000 {
                 let (name, surface) = one_of_many(seed);
                 folder.bare("many", &format!("{seed:03}_{name}_{}", surface.1.len()), surface)?;
+            }
+        }
+        "canonical" => {
+            for seed in 0..1000u64 {
+                let n = 18 + 2 * (seed as usize % 4);
+                let sphere = random_sphere(n, seed).ok_or("there are spheres of every such size")?;
+                let quads = sphere.quads_raw();
+                folder.bare("canonical", &format!("{seed:03}_{n}"), (canonical_polyhedron(&sphere)?, quads))?;
             }
         }
         _ => return Err(format!("no kind {kind}").into()),
