@@ -5,9 +5,12 @@
 //! at the same place on all ways. (The integer-grid maps of polycube methods, here read off the surface instead of solved for; Tarini, Hormann,
 //! Cignoni, Montani 2004.)
 //!
+//! A solid that is bent until its ends meet, a flange or a pulley, comes out at places that differ by multiples of one *period* along an axis: it is a surface in the
+//! grid rolled up that way, and develops, too.
+//!
 //! Components are developed one by one; a cavity is placed by the affine map that takes the outer component's development nearest to its positions.
 //!
-//! Invariant: neighbouring vertices lie one step apart, and quads face outward of the solid as those of the surface do.
+//! Invariant: neighbouring vertices lie one step apart, up to the period, and quads face outward of the solid as those of the surface do.
 //!
 //! Source: ours, after Tarini et al. 2004.
 
@@ -24,7 +27,12 @@ pub(crate) struct Development {
     pub at: Vec<Site>,
     /// Per quad: its outward unit normal.
     pub normal: Vec<Site>,
+    /// After how many steps along z the grid comes back to where it began; 0 if never.
+    pub period: i32,
 }
+
+/// Shorter periods are none: three hexes make the smallest proper ring.
+const SHORTEST_PERIOD: i32 = 3;
 
 fn add(a: Site, b: Site) -> Site {
     [0, 1, 2].map(|k| a[k] + b[k])
@@ -41,14 +49,19 @@ fn cross(a: Site, b: Site) -> Site {
 /// The surface in the grid; `wanted` is per dart. `None` if it does not develop, or the place of a cavity cannot be told: that needs
 /// positions, and one component that faces outward.
 pub(crate) fn develop(surface: &QuadSurface, wanted: &[f32], points: Option<&[[f64; 3]]>) -> Option<Development> {
-    let mut development =
-        Development { at: vec![[i32::MIN; 3]; surface.n_vertices()], normal: vec![[0; 3]; surface.n_quads()] };
+    let mut development = Development {
+        at: vec![[i32::MIN; 3]; surface.n_vertices()],
+        normal: vec![[0; 3]; surface.n_quads()],
+        period: 0,
+    };
+    let mut periods = [0; 3];
     let mut components = Vec::new();
     for q in 0..surface.n_quads() as u32 {
         if development.normal[q as usize] == [0; 3] {
-            components.push(development.component(surface, wanted, q)?);
+            components.push(development.component(surface, wanted, q, &mut periods)?);
         }
     }
+    development.roll_up(periods, components.len())?;
     if components.len() > 1 {
         development.place_cavities(surface, &components, points?)?;
     }
@@ -57,11 +70,11 @@ pub(crate) fn develop(surface: &QuadSurface, wanted: &[f32], points: Option<&[[f
 
 impl Development {
     /// Develops the component of quad `first`; its quads.
-    fn component(&mut self, surface: &QuadSurface, wanted: &[f32], first: u32) -> Option<Vec<u32>> {
+    fn component(&mut self, surface: &QuadSurface, wanted: &[f32], first: u32, periods: &mut Site) -> Option<Vec<u32>> {
         // Per quad to look at: its dart 0's direction.
         let mut quads: Vec<(u32, Site)> = Vec::new();
         let start = surface.quads()[first as usize][0].index();
-        self.put(surface, Dart(4 * first), [0, 0, 1], [1, 0, 0], [0; 3])?;
+        self.put(surface, Dart(4 * first), [0, 0, 1], [1, 0, 0], [0; 3], periods)?;
         debug_assert_eq!(self.at[start], [0; 3]);
         quads.push((first, [1, 0, 0]));
         let mut done = 0;
@@ -83,7 +96,7 @@ impl Development {
                 // Quads that are placed already are put again: that they come out at the same place on every way is
                 // what developing means.
                 let known = self.normal[t.quad().index()] != [0; 3];
-                self.put(surface, t, turned, minus(along), from)?;
+                self.put(surface, t, turned, minus(along), from, periods)?;
                 if !known {
                     let back = (0..(4 - t.side()) % 4).fold(minus(along), |e, _| cross(turned, e));
                     quads.push((t.quad().0, back));
@@ -94,8 +107,17 @@ impl Development {
         Some(quads.into_iter().map(|(q, _)| q).collect())
     }
 
-    /// Places the quad of dart `d`, which starts at `from` in direction `along`; `None` if it, or a corner, lies elsewhere already.
-    fn put(&mut self, surface: &QuadSurface, d: Dart, normal: Site, along: Site, from: Site) -> Option<()> {
+    /// Places the quad of dart `d`, which starts at `from` in direction `along`. A corner that has a place elsewhere keeps it, and how far away that is
+    /// becomes a multiple of the period of that axis; `None` if the quad lies another way round, or a corner is off along two axes.
+    fn put(
+        &mut self,
+        surface: &QuadSurface,
+        d: Dart,
+        normal: Site,
+        along: Site,
+        from: Site,
+        periods: &mut Site,
+    ) -> Option<()> {
         let slot = &mut self.normal[d.quad().index()];
         if *slot != [0; 3] && *slot != normal {
             return None;
@@ -104,15 +126,44 @@ impl Development {
         let (mut d, mut along, mut at) = (d, along, from);
         for _ in 0..4 {
             let slot = &mut self.at[surface.origin(d).index()];
-            if *slot != [i32::MIN; 3] && *slot != at {
-                return None;
+            if *slot == [i32::MIN; 3] {
+                *slot = at;
             }
-            *slot = at;
+            let off = add(at, minus(*slot));
+            match off.iter().filter(|&&x| x != 0).count() {
+                0 => (),
+                1 => (0..3).for_each(|k| periods[k] = gcd(periods[k], off[k].abs())),
+                _ => return None,
+            }
             at = add(at, along);
             along = cross(normal, along);
             d = d.next();
         }
         Some(())
+    }
+
+    /// Turns the axis with a period into z, and brings all places into the first period. `None` if there are several, a short one, or one and several components.
+    fn roll_up(&mut self, periods: Site, n_components: usize) -> Option<()> {
+        let Some(axis) = periods.iter().position(|&p| p != 0) else { return Some(()) };
+        let period = periods[axis];
+        if periods.iter().filter(|&&p| p != 0).count() > 1 || period < SHORTEST_PERIOD || n_components > 1 {
+            return None;
+        }
+        // A cyclic change of axes is a rotation: outward stays outward.
+        let turned = |x: Site| [1, 2, 3].map(|k| x[(axis + k) % 3]);
+        self.at.iter_mut().for_each(|x| *x = turned(*x));
+        self.at.iter_mut().for_each(|x| x[2] = x[2].rem_euclid(period));
+        self.normal.iter_mut().for_each(|x| *x = turned(*x));
+        self.period = period;
+        Some(())
+    }
+
+    /// A place in the first period.
+    pub(crate) fn rolled(&self, mut site: Site) -> Site {
+        if self.period != 0 {
+            site[2] = site[2].rem_euclid(self.period);
+        }
+        site
     }
 
     /// Six times the volume of some quads' component, in the grid.
@@ -164,6 +215,11 @@ impl Development {
         }
         Some(())
     }
+}
+
+/// The greatest common divisor, with gcd(0, b) = b.
+fn gcd(a: i32, b: i32) -> i32 {
+    if b == 0 { a } else { gcd(b, a % b) }
 }
 
 /// The 24 rotations of the grid, by rows.

@@ -61,7 +61,8 @@ impl Cells {
             let axis = normal.iter().position(|&x| x != 0)?;
             let mut site = lowest(surface, development, q);
             site[axis] -= i32::from(normal[axis] > 0);
-            let wall = &mut walls[*number.get(&site)? as usize][2 * axis + usize::from(normal[axis] > 0)];
+            let wall =
+                &mut walls[*number.get(&development.rolled(site))? as usize][2 * axis + usize::from(normal[axis] > 0)];
             if std::mem::replace(wall, q as u32) != NONE {
                 return None;
             }
@@ -70,10 +71,10 @@ impl Cells {
     }
 
     /// The cell across a facet that is not on the surface.
-    fn beside(&self, cell: usize, facet: usize) -> Option<u32> {
+    fn beside(&self, development: &Development, cell: usize, facet: usize) -> Option<u32> {
         let mut site = self.sites[cell];
         site[facet / 2] += if facet.is_multiple_of(2) { -1 } else { 1 };
-        self.number.get(&site).copied()
+        self.number.get(&development.rolled(site)).copied()
     }
 
     fn hexes(&self, surface: &QuadSurface, development: &Development) -> Option<Vec<[u32; 8]>> {
@@ -85,7 +86,7 @@ impl Cells {
                 if self.walls[cell][facet] != NONE {
                     continue;
                 }
-                let other = self.beside(cell, facet)?;
+                let other = self.beside(development, cell, facet)?;
                 // A wall seen from one side only: the surface overlaps itself in the grid.
                 if self.walls[other as usize][facet ^ 1] != NONE {
                     return None;
@@ -103,7 +104,7 @@ impl Cells {
         for (cell, walls) in self.walls.iter().enumerate() {
             for &q in walls.iter().filter(|&&q| q != NONE) {
                 for v in surface.quads()[q as usize] {
-                    let p = [0, 1, 2].map(|k| development.at[v.index()][k] - self.sites[cell][k]);
+                    let p = development.rolled([0, 1, 2].map(|k| development.at[v.index()][k] - self.sites[cell][k]));
                     if p.iter().any(|&x| x != 0 && x != 1) {
                         return None;
                     }
@@ -134,9 +135,16 @@ impl Cells {
     }
 }
 
+/// The lowest corner of a quad.
 fn lowest(surface: &QuadSurface, development: &Development, q: usize) -> Site {
     let corners = surface.quads()[q].map(|v| development.at[v.index()]);
-    [0, 1, 2].map(|k| corners.iter().map(|c| c[k]).min().expect("four corners"))
+    let mut lowest = [0, 1, 2].map(|k| corners.iter().map(|c| c[k]).min().expect("four corners"));
+    let highest = corners.iter().map(|c| c[2]).max().expect("four corners");
+    // Over the seam of a grid that is rolled up, from the end to the beginning.
+    if highest - lowest[2] > 1 {
+        lowest[2] = highest;
+    }
+    lowest
 }
 
 /// Corners of cells that are one vertex.
@@ -205,6 +213,45 @@ mod tests {
                 && (x, y) != (3, 3)
                 && !((2..5).contains(&x) && (2..5).contains(&y))
         });
+    }
+
+    /// A solid of revolution of `n` hexes round the axis, whose section is the filled cells of a grid (distance from the axis, height), and its hexes.
+    fn ring(n: u32, cells: &[[u32; 2]]) -> (QuadSurface, Vec<[f64; 3]>, usize) {
+        let width = cells.iter().flatten().max().unwrap() + 2;
+        let vertex = |turn: u32, r: u32, z: u32| (turn % n) * width * width + r * width + z;
+        let place = |v: u32| {
+            let (turn, r, z) = (v / width / width, v / width % width, v % width);
+            let angle = std::f64::consts::TAU * f64::from(turn) / f64::from(n);
+            [f64::from(r + n) * angle.cos(), f64::from(r + n) * angle.sin(), f64::from(z)]
+        };
+        let points: Vec<[f64; 3]> = (0..n * width * width).map(place).collect();
+        let hex = |turn: u32, &[r, z]: &[u32; 2]| {
+            let bottom = [[turn, r], [turn, r + 1], [turn + 1, r + 1], [turn + 1, r]];
+            std::array::from_fn(|i| vertex(bottom[i % 4][0], bottom[i % 4][1], z + i as u32 / 4))
+        };
+        let hexes: Vec<[u32; 8]> = (0..n).flat_map(|turn| cells.iter().map(move |c| hex(turn, c))).collect();
+        let (surface, points) = crate::test_surfaces::boundary_of(&points, &hexes);
+        (surface, points, hexes.len())
+    }
+
+    #[test]
+    fn solids_of_revolution_are_rolled_up() {
+        let block = |from: [u32; 2], to: [u32; 2]| {
+            (from[0]..to[0]).flat_map(move |r| (from[1]..to[1]).map(move |z| [r, z])).collect::<Vec<[u32; 2]>>()
+        };
+        let [tube, flange, pulley] = [block([0, 0], [2, 5]), block([2, 0], [4, 2]), block([2, 4], [5, 5])];
+        let sections = [tube.clone(), [tube.clone(), flange.clone()].concat(), [tube, flange, pulley].concat()];
+        for (section, n) in sections.iter().flat_map(|s| [9, 12, 31].map(|n| (s, n))) {
+            let (surface, points, known) = ring(n, section);
+            // What a ring wants round itself is 2 - 4 / n hexes, and the rest is as in the section.
+            let wanted = wanted_hexes(&surface, Some(&points));
+            let development = develop(&surface, &wanted, Some(&points)).expect("a period is no fault");
+            assert_eq!(development.period, n as i32);
+            let hexes = polycube(&surface, &development).expect("the hexes of the solid");
+            let n_vertices = hexes.iter().flatten().max().unwrap() + 1;
+            let swept = Swept { n_vertices, hexes, plugs: 0, front: Vec::new(), stopped: None };
+            assert_eq!(judged(&surface, &swept), known);
+        }
     }
 
     #[test]

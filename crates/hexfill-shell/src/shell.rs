@@ -133,7 +133,7 @@ const STIRRING: u32 = 20;
 const PERFECT: f32 = 1e-3;
 /// Surfaces of more quads are not swept by flips without compression too, nor by layers.
 const MOST_FINE: usize = 20_000;
-const MOST_FINE_LAYERS: usize = 2_000;
+const MOST_FINE_LAYERS: usize = 10_000;
 
 /// Sweeps a surface inward. `points`: one position per vertex of the surface, outward orientation; without them every edge is
 /// taken for flat.
@@ -488,6 +488,7 @@ fn close_residual(front: &Front, ctx: &Context<'_>) -> Vec<Hexes> {
 mod tests {
     use super::*;
     use crate::compress::compress;
+    use crate::test_surfaces::boundary_of;
 
     /// A round shaft with an O-grid section, four quads in the core and `rings` rings of eight, the outermost of which ends `low` layers up: its surface, and
     /// the number of hexes of its sweep.
@@ -517,16 +518,8 @@ mod tests {
                 hexes.push(std::array::from_fn(at));
             }
         }
-        let n_hexes = hexes.len();
-        let mesh = HexMesh::try_new(points.len(), &hexes).unwrap();
-        let quads = mesh.boundary_quads_raw();
-        // The vertices of the surface alone, in their order.
-        let mut number = vec![u32::MAX; points.len()];
-        let on: Vec<usize> = (0..points.len()).filter(|&v| mesh.boundary_vertices()[v]).collect();
-        on.iter().enumerate().for_each(|(i, &v)| number[v] = i as u32);
-        let quads: Vec<[u32; 4]> = quads.iter().map(|q| q.map(|v| number[v as usize])).collect();
-        let surface = QuadSurface::try_new(on.len(), &quads).unwrap();
-        (surface, on.into_iter().map(|v| points[v]).collect(), n_hexes)
+        let (surface, points) = boundary_of(&points, &hexes);
+        (surface, points, hexes.len())
     }
 
     #[test]
@@ -536,7 +529,7 @@ mod tests {
             let wanted = wanted_hexes(&surface, Some(&points));
             let coarse = compress(&surface, &wanted);
             // The rings of the wide end are one chord of the compressed surface.
-            assert!(coarse.length.iter().any(|&m| m == rings), "{:?}", coarse.length);
+            assert!(coarse.length.contains(&rings), "{:?}", coarse.length);
             let made = shell(&surface, Some(&points), &ShellOptions::default(), &Context::default());
             let best = made.meshes.iter().min_by(|a, b| a.cost.total_cmp(&b.cost)).unwrap();
             assert_eq!((best.mesh.n_hexes(), best.pillows), (known, 0));

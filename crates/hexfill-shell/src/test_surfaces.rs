@@ -3,7 +3,7 @@
 use crate::sweep::Swept;
 use hexfill_check::{Judged, Level, judge};
 use hexfill_mesh::generate::torus;
-use hexfill_mesh::{Context, QuadSurface};
+use hexfill_mesh::{Context, HexMesh, QuadSurface};
 
 /// A torus of `n` quads round the axis and `m` round the tube, facing outward.
 pub(crate) fn torus_at(n: u32, m: u32) -> (QuadSurface, Vec<[f64; 3]>) {
@@ -36,7 +36,7 @@ pub(crate) fn judged(surface: &QuadSurface, swept: &Swept) -> usize {
     let options = hexfill_check::Options::default().with_up_to(Level::L3);
     let report = judge(&input, &options, &Context::default());
     assert!(report.passed(Level::L3), "{:?}", report.failures);
-    let mesh = hexfill_mesh::HexMesh::try_new(swept.n_vertices as usize, &swept.hexes).unwrap();
+    let mesh = HexMesh::try_new(swept.n_vertices as usize, &swept.hexes).unwrap();
     assert_eq!(2 * hexfill_mesh::euler_characteristic(&mesh), surface.euler_characteristic());
     swept.hexes.len()
 }
@@ -61,6 +61,17 @@ pub(crate) fn voxels(size: [usize; 3], filled: impl Fn([usize; 3]) -> bool) -> O
         angles.insert((a.0.min(b.0), a.0.max(b.0)), n as f32);
     }
     Some((surface, angles))
+}
+
+/// The surface of some hexes, its vertices in their order.
+pub(crate) fn boundary_of(points: &[[f64; 3]], hexes: &[[u32; 8]]) -> (QuadSurface, Vec<[f64; 3]>) {
+    let mesh = HexMesh::try_new(points.len(), hexes).unwrap();
+    let mut number = vec![u32::MAX; points.len()];
+    let on: Vec<usize> = (0..points.len()).filter(|&v| mesh.boundary_vertices()[v]).collect();
+    on.iter().enumerate().for_each(|(i, &v)| number[v] = i as u32);
+    let quads: Vec<[u32; 4]> = mesh.boundary_quads_raw().into_iter().map(|q| q.map(|v| number[v as usize])).collect();
+    let surface = QuadSurface::try_new(on.len(), &quads).unwrap();
+    (surface, on.into_iter().map(|v| points[v]).collect())
 }
 
 /// Angles / 90 degrees of edges.
