@@ -1,6 +1,6 @@
 //! Writes test surfaces for `tests/campaign.py`: `cargo run --release --example make_solids -- FOLDER [KIND...]`.
 //!
-//! KIND is `solids` (some 30 solids with a known good hex mesh), `voxels` (200 random ones of genus 0), `holes` (100 with tunnels and
+//! KIND is `solids` (some 30 solids with a known good hex mesh), `turned` (parts made on a lathe), `voxels` (200 random ones of genus 0), `holes` (100 with tunnels and
 //! cavities), `balls` (cubed spheres and ellipsoids), `cut` (triangulated spheres cut into quads), `radial` (radial graphs), `smooth`
 //! (voxel solids refined and smoothed) or `mixed` (quad-dominant surfaces refined, with self-crossing chords); all these by default. `many`
 //! is 1,000 random surfaces of 30 to 300 quads of all these kinds, `canonical` 1,000 random spheres of 18 to 24 quads on their canonical polyhedra, both without
@@ -76,13 +76,18 @@ const MIXED: [usize; 8] = [24, 40, 60, 100, 150, 250, 400, 650];
 /// Points of the radial graphs, even so that the quads are: 24 to 198 quads.
 const RADIAL: [usize; 9] = [10, 12, 16, 20, 24, 30, 40, 54, 68];
 
-const KINDS: [&str; 8] = ["solids", "voxels", "holes", "balls", "cut", "radial", "smooth", "mixed"];
+const KINDS: [&str; 9] = ["solids", "turned", "voxels", "holes", "balls", "cut", "radial", "smooth", "mixed"];
 
 fn make(kind: &str, folder: &mut Folder) -> Result<(), Box<dyn Error>> {
     match kind {
         "solids" => {
             for (name, solid) in solids::all() {
                 folder.solid("solid", name, solid)?;
+            }
+        }
+        "turned" => {
+            for (name, solid) in solids::turned() {
+                folder.solid("turned", name, solid)?;
             }
         }
         "voxels" => {

@@ -74,6 +74,33 @@ fn deformed([x, y, z]: Point) -> Point {
     [x + 0.25 * (0.6 * y + 0.4 * z).sin(), y + 0.25 * (0.5 * z + 0.3 * x).sin(), z + 0.2 * (0.5 * x - 0.4 * y).cos()]
 }
 
+/// Parts made on a lathe by name: tubes of four rings and rods of a core and five, of which rings are left out in some layers.
+pub(crate) fn turned() -> Vec<(&'static str, Solid)> {
+    type Keep = fn(usize, usize) -> bool;
+    let tube = |keep: Keep| {
+        let section = Section::annulus(24, 4, [1.0, 2.0]);
+        Solid::swept(&section, 8, |quad, layer| keep(quad / 24, layer), |[x, y], t| [x, y, 2.0 * t])
+    };
+    // The core is ring 0.
+    let rod = |keep: Keep| {
+        let ring = |quad: usize| if quad < 16 { 0 } else { quad / 16 };
+        Solid::swept(&Section::o_grid(4, 5), 12, |quad, layer| keep(ring(quad), layer), |[x, y], t| [x, y, 3.0 * t])
+    };
+    vec![
+        ("flange", tube(|ring, layer| ring < 2 || layer < 2)),
+        ("two_flanges", tube(|ring, layer| ring < 2 || layer < 2 || layer > 5)),
+        ("pulley", tube(|ring, layer| ring < 3 || layer < 3 || layer > 4)),
+        ("stepped_bore", tube(|ring, layer| ring > 1 || layer < 3)),
+        ("three_diameters", rod(|ring, layer| ring < 3 || ring < 5 && layer < 8 || layer < 4)),
+        ("dumbbell", rod(|ring, layer| ring < 3 || !(3..9).contains(&layer))),
+        ("spool", rod(|ring, layer| ring < 3 || layer < 3 || ring < 5 && layer > 8)),
+        ("cup", rod(|ring, layer| ring > 3 || layer < 3)),
+        ("nozzle", rod(|ring, layer| ring > 3 || ring > 2 && layer < 9 || layer < 4)),
+        ("piston", rod(|ring, layer| layer > 8 || ring > 2 && (ring < 5 || !matches!(layer, 2 | 5)))),
+        ("grooved", rod(|ring, layer| ring < 5 || !matches!(layer, 2 | 3 | 7))),
+    ]
+}
+
 /// All solids by name. A table, a line or two each: it is read by looking up, so it stays in one piece.
 pub(crate) fn all() -> Vec<(&'static str, Solid)> {
     let square = |n: usize, a: f64| Section::rectangle([n, n], [a, a]);
