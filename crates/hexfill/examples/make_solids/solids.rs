@@ -88,8 +88,8 @@ pub(crate) fn turned() -> Vec<(&'static str, Solid)> {
     };
     vec![
         ("flange", tube(|ring, layer| ring < 2 || layer < 2)),
-        ("two_flanges", tube(|ring, layer| ring < 2 || layer < 2 || layer > 5)),
-        ("pulley", tube(|ring, layer| ring < 3 || layer < 3 || layer > 4)),
+        ("two_flanges", tube(|ring, layer| ring < 2 || !(2..6).contains(&layer))),
+        ("pulley", tube(|ring, layer| ring < 3 || !(3..5).contains(&layer))),
         ("stepped_bore", tube(|ring, layer| ring > 1 || layer < 3)),
         ("three_diameters", rod(|ring, layer| ring < 3 || ring < 5 && layer < 8 || layer < 4)),
         ("dumbbell", rod(|ring, layer| ring < 3 || !(3..9).contains(&layer))),
