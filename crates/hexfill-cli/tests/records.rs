@@ -25,7 +25,7 @@ fn every_record_is_a_ball_with_its_boundary() {
 #[test]
 fn a_judge_that_was_stopped_refuses_nothing() {
     let dir = tempfile::tempdir().unwrap();
-    let (code, out, err) = hexfill(dir.path(), &["records", "--verify", "--json", "--time-limit", "1ms"]);
+    let (code, out, err) = hexfill(dir.path(), &["records", "--verify", "--json", "--time-limit", "0s"]);
     assert_eq!((code, &json(&out)["exit_code"]), (3, &3.into()), "{err}");
-    assert!(json(&out)["records"].as_array().unwrap().iter().all(|row| row["verified"] != false), "{out}");
+    assert!(json(&out)["records"].as_array().unwrap().iter().all(|row| row["verified"].is_null()), "{out}");
 }
