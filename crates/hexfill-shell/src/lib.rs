@@ -4,7 +4,7 @@
 //! closings (`layer`) on the void (`void`) -> `lift` back to the fine surface. By flips: `front` what is left -> `lens` the
 //! smallest lens of its dual -> `zip` flips that empty it -> `sweep` until nothing is left. Both know by a pair table (`pairs`)
 //! what is joined already.
-//! Before them: `plug` cuts handles, `bridge` joins cavities to the outside. Without any sweep: `polycube`, `between`.
+//! Before them: `plug` cuts handles, `bridge` joins cavities to the outside. Without any sweep: `polycube`, `section`, `between`.
 //!
 //! | question | verb |
 //! |---|---|
@@ -27,6 +27,7 @@ mod blend;
 mod boundary_layers;
 mod bridge;
 mod cells;
+mod classes;
 mod close;
 mod compress;
 mod dart;
@@ -43,6 +44,7 @@ mod pillow;
 mod plug;
 mod polycube;
 mod quadrangulation;
+mod section;
 mod shell;
 mod solve;
 mod split_star;

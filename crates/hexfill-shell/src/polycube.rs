@@ -8,6 +8,7 @@
 //!
 //! Source: ours, after Tarini et al. 2004.
 
+use crate::classes::Classes;
 use crate::develop::{Development, Site};
 use crate::front::{Front, NONE};
 use hexfill_mesh::QuadSurface;
@@ -80,7 +81,7 @@ impl Cells {
     fn hexes(&self, surface: &QuadSurface, development: &Development) -> Option<Vec<[u32; 8]>> {
         // Cells are joined through facets, never by where they lie: parts that only touch in the grid must not share
         // corners.
-        let mut corners = Corners((0..8 * self.sites.len() as u32).collect());
+        let mut corners = Classes::new(8 * self.sites.len());
         for cell in 0..self.sites.len() {
             for facet in 0..6 {
                 if self.walls[cell][facet] != NONE {
@@ -145,24 +146,6 @@ fn lowest(surface: &QuadSurface, development: &Development, q: usize) -> Site {
         lowest[2] = highest;
     }
     lowest
-}
-
-/// Corners of cells that are one vertex.
-struct Corners(Vec<u32>);
-
-impl Corners {
-    fn root(&mut self, mut i: u32) -> u32 {
-        while self.0[i as usize] != i {
-            self.0[i as usize] = self.0[self.0[i as usize] as usize];
-            i = self.0[i as usize];
-        }
-        i
-    }
-
-    fn join(&mut self, i: u32, j: u32) {
-        let (a, b) = (self.root(i), self.root(j));
-        self.0[a.max(b) as usize] = a.min(b);
-    }
 }
 
 #[cfg(test)]

@@ -10,6 +10,7 @@ use crate::deviation::{Deviation, deviation};
 use crate::front::Front;
 use crate::lift::{CoarseMesh, lift};
 use crate::polycube::polycube;
+use crate::section::columns;
 use crate::solve::{Sweep, solve};
 use crate::stage::Stage;
 use crate::stir::stir_front;
@@ -27,6 +28,7 @@ use std::sync::Arc;
 /// |---|---|
 /// | restarts, seeds | 64, 4 |
 /// | pillows | 0 and 1 |
+/// | meshes that need no sweep | yes |
 /// | candidates | 3 |
 /// | largest residual | any |
 #[derive(Clone, Debug)]
@@ -34,13 +36,21 @@ pub struct ShellOptions {
     restarts: u64,
     seeds: u64,
     pillows: Vec<u32>,
+    is_direct: bool,
     candidates: usize,
     largest_residual: usize,
 }
 
 impl Default for ShellOptions {
     fn default() -> Self {
-        Self { restarts: 64, seeds: 4, pillows: vec![0, 1], candidates: 3, largest_residual: usize::MAX }
+        Self {
+            restarts: 64,
+            seeds: 4,
+            pillows: vec![0, 1],
+            is_direct: true,
+            candidates: 3,
+            largest_residual: usize::MAX,
+        }
     }
 }
 
@@ -57,10 +67,16 @@ impl ShellOptions {
         Self { seeds, ..self }
     }
 
-    /// Numbers of pillows to try, one after the other.
+    /// Numbers of pillows to sweep with, one after the other; none: no sweep.
     #[must_use]
     pub fn with_pillows(self, pillows: Vec<u32>) -> Self {
         Self { pillows, ..self }
+    }
+
+    /// Whether the grid, sections and columns between components, which need no sweep, are asked first.
+    #[must_use]
+    pub fn with_direct(self, is_direct: bool) -> Self {
+        Self { is_direct, ..self }
     }
 
     /// Most meshes returned for each number of pillows.
@@ -83,6 +99,11 @@ impl ShellOptions {
     /// Seeds of the sweep by flips.
     pub fn seeds(&self) -> u64 {
         self.seeds
+    }
+
+    /// Numbers of pillows to sweep with.
+    pub fn pillows(&self) -> &[u32] {
+        &self.pillows
     }
 
     /// Most meshes for each number of pillows.
@@ -170,17 +191,12 @@ pub fn shell(
     let wanted = wanted_hexes(surface, points);
     let (coarse, fine) = (Arc::new(compress(surface, &wanted)), Arc::new(uncompressed(surface, &wanted)));
     let shared = points.map(Arc::from);
-    // A box is one cube, however many quads it has: cutting that one takes less than finding all its cells.
-    let is_box = coarse.surface.n_quads() == 6;
-    let developed = if is_box { None } else { develop(surface, &wanted, points) };
-    let cells = developed.and_then(|d| polycube(surface, &d));
     let shelling = Shelling { coarse_quads: coarse.surface.n_quads(), left: usize::MAX, ..Shelling::default() };
     let mut keeper = Keeper { surface, points, shared, coarse: &coarse, fine: &fine, options, shelling };
+    if options.is_direct {
+        keeper.fill_directly(&wanted, ctx);
+    }
     for &pillows in &options.pillows {
-        if let (0, Some(hexes)) = (pillows, &cells) {
-            keeper.keep(&fine, 0, vec![Glued::at_once(Stage::Grid, hexes.clone())], ctx);
-            keeper.shelling.left = 0;
-        }
         if keeper.shelling.is_perfect() || ctx.stop().is_some() {
             break;
         }
@@ -195,7 +211,7 @@ pub fn shell(
 
 impl Shelling {
     /// Whether a mesh gives every edge the hexes its angle wants: nothing is better then.
-    fn is_perfect(&self) -> bool {
+    pub fn is_perfect(&self) -> bool {
         self.meshes.iter().any(|m| m.cost < PERFECT)
     }
 }
@@ -213,6 +229,30 @@ struct Keeper<'a> {
 }
 
 impl Keeper<'_> {
+    /// The meshes that need no sweep: the cells of a grid, columns over a section, columns between two components.
+    fn fill_directly(&mut self, wanted: &[f32], ctx: &Context<'_>) {
+        let surface = self.surface;
+        // A box is one cube, however many quads it has: cutting that one takes less than finding all its cells.
+        if self.coarse.surface.n_quads() == 6 {
+            return;
+        }
+        let cells = develop(surface, wanted, self.points).and_then(|d| polycube(surface, &d));
+        self.keep_direct(Stage::Grid, cells, ctx);
+        if self.shelling.is_perfect() {
+            return;
+        }
+        self.keep_direct(Stage::Columns, columns(surface, wanted), ctx);
+        let given = self.points.filter(|_| surface.n_components() > 1 && surface.n_quads() <= MOST_FINE);
+        self.keep_direct(Stage::Columns, given.and_then(|points| between(surface, points)), ctx);
+    }
+
+    fn keep_direct(&mut self, stage: Stage, meshes: impl IntoIterator<Item = Hexes>, ctx: &Context<'_>) {
+        let glued: Vec<Glued> = meshes.into_iter().map(|hexes| Glued::at_once(stage, hexes)).collect();
+        if self.keep(self.fine, 0, glued, ctx) > 0 {
+            self.shelling.left = 0;
+        }
+    }
+
     /// Sweeps a surface of one component: compressed, and as it is where handles are cut or compression left nothing that closes.
     fn sweep_one(&mut self, pillows: u32, ctx: &Context<'_>) {
         let meshes = Start::new(self.coarse, pillows).complete(self.options, &mut self.shelling.left, ctx);
@@ -251,17 +291,11 @@ impl Keeper<'_> {
         }
     }
 
-    /// Fills between the components of a surface: by columns, and swept once bridges join the components.
+    /// Sweeps between the components of a surface once bridges join them.
     fn sweep_several(&mut self, pillows: u32, ctx: &Context<'_>) {
         let Some(given) = self.points.filter(|_| self.surface.n_quads() <= MOST_FINE && ctx.stop().is_none()) else {
             return;
         };
-        if pillows == 0
-            && let Some(hexes) = between(self.surface, given)
-        {
-            self.keep(self.fine, 0, vec![Glued::at_once(Stage::Columns, hexes)], ctx);
-            self.shelling.left = 0;
-        }
         self.sweep_cut_open(given, pillows, ctx);
     }
 

@@ -7,7 +7,7 @@
 pub enum Stage {
     /// A cell of the grid into which the surface unrolls.
     Grid,
-    /// A column between mirror images.
+    /// In a column: over a quad of the section, or between mirror images.
     Columns,
     /// The layer of one hex under every quad.
     Pillows,

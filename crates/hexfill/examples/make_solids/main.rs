@@ -1,6 +1,6 @@
 //! Writes test surfaces for `tests/campaign.py`: `cargo run --release --example make_solids -- FOLDER [KIND...]`.
 //!
-//! KIND is `solids` (some 30 solids with a known good hex mesh), `turned` (parts made on a lathe), `voxels` (200 random ones of genus 0), `holes` (100 with tunnels and
+//! KIND is `solids` (some 30 solids with a known good hex mesh), `turned` (parts made on a lathe), `milled` (16 parts milled out of plates, and 100 random ones), `voxels` (200 random ones of genus 0), `holes` (100 with tunnels and
 //! cavities), `balls` (cubed spheres and ellipsoids), `cut` (triangulated spheres cut into quads), `radial` (radial graphs), `smooth`
 //! (voxel solids refined and smoothed) or `mixed` (quad-dominant surfaces refined, with self-crossing chords); all these by default. `many`
 //! is 1,000 random surfaces of 30 to 300 quads of all these kinds, `canonical` 1,000 random spheres of 18 to 24 quads on their canonical polyhedra, both without
@@ -8,6 +8,7 @@
 //! vertices are those of the surface. `references.json` says for each file its kind, quads, and the reference's hexes and
 //! certified scaled Jacobian. The same folder comes out everywhere, up to the last bits of sines.
 
+mod milled;
 mod refine;
 mod section;
 mod solid;
@@ -76,7 +77,8 @@ const MIXED: [usize; 8] = [24, 40, 60, 100, 150, 250, 400, 650];
 /// Points of the radial graphs, even so that the quads are: 24 to 198 quads.
 const RADIAL: [usize; 9] = [10, 12, 16, 20, 24, 30, 40, 54, 68];
 
-const KINDS: [&str; 9] = ["solids", "turned", "voxels", "holes", "balls", "cut", "radial", "smooth", "mixed"];
+const KINDS: [&str; 10] =
+    ["solids", "turned", "milled", "voxels", "holes", "balls", "cut", "radial", "smooth", "mixed"];
 
 fn make(kind: &str, folder: &mut Folder) -> Result<(), Box<dyn Error>> {
     match kind {
@@ -88,6 +90,14 @@ fn make(kind: &str, folder: &mut Folder) -> Result<(), Box<dyn Error>> {
         "turned" => {
             for (name, solid) in solids::turned() {
                 folder.solid("turned", name, solid)?;
+            }
+        }
+        "milled" => {
+            for (name, solid) in milled::parts() {
+                folder.solid("milled", name, solid)?;
+            }
+            for seed in 0..100 {
+                folder.solid("milled", &format!("{seed:03}"), milled::random(seed))?;
             }
         }
         "voxels" => {
@@ -218,7 +228,7 @@ fn one_of_many(seed: u64) -> (&'static str, spheres::Surface) {
 fn main() -> Result<(), Box<dyn Error>> {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let Some((path, kinds)) = words.split_first() else {
-        return Err("usage: make_solids FOLDER [solids|voxels|holes|balls|cut|radial|smooth|mixed ...]".into());
+        return Err("usage: make_solids FOLDER [solids|turned|milled|voxels|holes|balls|cut|radial|smooth|mixed ...]".into());
     };
     let mut folder = Folder { path: Path::new(path).to_owned(), facts: Map::new() };
     std::fs::create_dir_all(folder.path.join("reference"))?;

@@ -185,7 +185,12 @@ impl<'a> Trial<'a> {
         }
         let shell = self.budget.shell.clone();
         let shell = if self.is_laid_first() { shell.with_largest_residual(MOST_STIRRED) } else { shell };
-        self.shell_by(shell)
+        if self.options.layers.is_some() || self.budget.enough.is_none() {
+            return self.shell_by(shell);
+        }
+        // Where the surface says what its columns are, sweeps have nothing better, and their embedding takes the time.
+        self.shell_by(shell.clone().with_pillows(Vec::new()))?;
+        if self.is_enough() { Ok(()) } else { self.shell_by(shell.with_direct(false)) }
     }
 
     /// Whether hexes are laid before the large residual of a sweep is stirred.

@@ -22,15 +22,15 @@ pub(crate) fn shelled(
     let points = problem.positions();
     let mut how = options.shell.clone();
     if options.layers.is_some() {
-        how = how.with_pillows(vec![1]);
+        how = how.with_pillows(vec![1]).with_direct(false);
     }
     let made = shell(&problem.surface, points.as_deref(), &how, ctx);
     result.stop = ctx.stop().unwrap_or(result.stop);
-    result.tried.push(Attempt::Shelling {
-        coarse_quads: made.coarse_quads,
-        meshes: made.meshes.len(),
-        left: made.left,
-    });
+    // Where nothing was swept and nothing found, nothing was tried.
+    if !how.pillows().is_empty() || !made.meshes.is_empty() {
+        let (coarse_quads, meshes, left) = (made.coarse_quads, made.meshes.len(), made.left);
+        result.tried.push(Attempt::Shelling { coarse_quads, meshes, left });
+    }
     let mut meshes = Vec::new();
     for shelled in made.meshes {
         if ctx.stop().is_some() && !meshes.is_empty() {

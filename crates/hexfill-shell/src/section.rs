@@ -1,0 +1,258 @@
+//! Sections: a solid between caps and upright walls is columns over one plane quad mesh, whatever its steps, bosses, pockets and holes.
+//!
+//! Idea: where every crease is a right angle, one quad called a *cap* tells for all others whether they are caps (facing up or down) or walls, and how
+//! high each vertex lies in edges. Walls are upright, so every cap is seen from above as it is; caps that share an edge seen from above, on the same side,
+//! are one quad of the *section*. Taking that for all edges at once folds the surface onto the section, also where only a flat side shows its inner quads
+//! (folding as in Stallings 1983). Over each quad of the section the caps must be, from low to high, down, up, down, up: the columns are between.
+//!
+//! Round holes, curved walls and caps are no matter, as angles within a section are not looked at.
+//!
+//! Invariant: a corner of a hex is told by its vertex of the section and its height; a surface with two vertices at one such place is refused.
+//!
+//! Source: ours; sweeps that map one source to one target are Knupp's (1998), here the surface gives the map.
+
+use crate::classes::Classes;
+use crate::dart::{next, opposite, prev, turn};
+use crate::front::Front;
+use hexfill_mesh::{Dart, QuadSurface};
+use rustc_hash::FxHashMap;
+
+/// Edges that want fewer or more hexes than these are creases, between a cap and a wall.
+const FLAT: std::ops::Range<f32> = 1.5..2.5;
+/// Smooth patches that are tried as the first caps, the largest ones.
+const MOST_PATCHES: usize = 16;
+/// More hexes than this are not made.
+const MOST_HEXES: i64 = 4_000_000;
+
+/// What a quad is, for somebody who knows where up is.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+enum Label {
+    Unknown,
+    FacesUp,
+    FacesDown,
+    /// The dart that leads up.
+    Wall(u32),
+}
+
+/// The hexes of every way to see the surface as a section with columns, vertices of the surface first. `wanted` is per dart.
+pub(crate) fn columns(surface: &QuadSurface, wanted: &[f32]) -> Vec<Vec<[u32; 8]>> {
+    let mut found = Vec::new();
+    // Two patches of one way are both its caps.
+    let mut is_cap = vec![false; surface.n_quads()];
+    for seed in patches(surface, wanted).into_iter().take(MOST_PATCHES) {
+        if is_cap[seed as usize] {
+            continue;
+        }
+        let Some(labels) = labels(surface, wanted, seed) else { continue };
+        (0..).zip(&labels).filter(|(_, l)| !matches!(l, Label::Wall(_))).for_each(|(q, _): (usize, _)| is_cap[q] = true);
+        found.extend(hexes(surface, &labels));
+    }
+    found
+}
+
+/// A quad of each smooth patch, largest patches first.
+fn patches(surface: &QuadSurface, wanted: &[f32]) -> Vec<u32> {
+    let mut patch = Classes::new(surface.n_quads());
+    for d in surface.darts().filter(|d| FLAT.contains(&wanted[d.index()])) {
+        patch.join(d.quad().0, surface.twin(d).quad().0);
+    }
+    let mut size = vec![0u32; surface.n_quads()];
+    (0..surface.n_quads() as u32).for_each(|q| size[patch.root(q) as usize] += 1);
+    let mut seeds: Vec<u32> = (0..surface.n_quads() as u32).filter(|&q| size[q as usize] > 0).collect();
+    // Stable: equals in the order of their quads.
+    seeds.sort_by_key(|&q| std::cmp::Reverse(size[q as usize]));
+    seeds
+}
+
+/// What all quads are if `seed` is a cap that faces up; `None` if some quad would be two things.
+fn labels(surface: &QuadSurface, wanted: &[f32], seed: u32) -> Option<Vec<Label>> {
+    let mut labels = vec![Label::Unknown; surface.n_quads()];
+    labels[seed as usize] = Label::FacesUp;
+    let mut work = vec![seed];
+    while let Some(q) = work.pop() {
+        for d in 4 * q..4 * q + 4 {
+            let t = surface.twin(Dart(d)).0;
+            let label = beyond(labels[q as usize], d, t, wanted[d as usize]);
+            let slot = &mut labels[(t >> 2) as usize];
+            if *slot == Label::Unknown {
+                *slot = label;
+                work.push(t >> 2);
+            }
+            if *slot != label {
+                return None;
+            }
+        }
+    }
+    // A surface of several components says nothing about how they lie to each other.
+    (!labels.contains(&Label::Unknown)).then_some(labels)
+}
+
+/// What the quad beyond dart `d` is; `t` is its dart there. Seen from outside, a wall goes round counter-clockwise: up on the right, back along the top,
+/// down on the left.
+fn beyond(label: Label, d: u32, t: u32, wanted: f32) -> Label {
+    let is_flat = FLAT.contains(&wanted);
+    let is_convex = wanted < FLAT.start;
+    match label {
+        Label::Wall(up) if d == up => Label::Wall(opposite(t)),
+        Label::Wall(up) if d == opposite(up) => Label::Wall(t),
+        Label::Wall(up) => match (d == next(up), is_flat) {
+            (true, true) => Label::Wall(next(t)),
+            (false, true) => Label::Wall(prev(t)),
+            // The top of a wall ends at a cap above it, or at a ceiling.
+            (is_top, false) if is_top == is_convex => Label::FacesUp,
+            _ => Label::FacesDown,
+        },
+        _ if is_flat => label,
+        // A wall goes down from a convex edge of what faces up, and rises from a concave one.
+        _ if (label == Label::FacesUp) == is_convex => Label::Wall(prev(t)),
+        _ => Label::Wall(next(t)),
+    }
+}
+
+/// Per vertex: its height in edges; `None` if that differs from way to way.
+fn heights(surface: &QuadSurface, labels: &[Label]) -> Option<Vec<i32>> {
+    let rise = |d: u32| match labels[(d >> 2) as usize] {
+        Label::Wall(up) if d == up => 1,
+        Label::Wall(up) if d == opposite(up) => -1,
+        _ => 0,
+    };
+    let mut height = vec![i32::MIN; surface.n_vertices()];
+    let mut is_done = vec![false; surface.n_quads()];
+    is_done[0] = true;
+    height[surface.origin(Dart(0)).index()] = 0;
+    let mut work = vec![0];
+    while let Some(first) = work.pop() {
+        let mut d = first;
+        for _ in 0..4 {
+            let at = height[surface.origin(Dart(d)).index()] + rise(d);
+            let slot = &mut height[surface.target(Dart(d)).index()];
+            if *slot == i32::MIN {
+                *slot = at;
+            }
+            if *slot != at {
+                return None;
+            }
+            let t = surface.twin(Dart(d)).0;
+            if !std::mem::replace(&mut is_done[(t >> 2) as usize], true) {
+                work.push(t);
+            }
+            d = next(d);
+        }
+    }
+    Some(height)
+}
+
+/// The surface folded onto its section. Edges of the section are told by darts, in both directions.
+struct Section<'a> {
+    surface: &'a QuadSurface,
+    labels: &'a [Label],
+    vertex: Classes,
+    edge: Classes,
+    quad: Classes,
+    /// Per root of `edge`: the cap on its left seen from above, and which of its four sides that is.
+    left: Vec<Option<(u32, usize)>>,
+}
+
+impl<'a> Section<'a> {
+    fn new(surface: &'a QuadSurface, labels: &'a [Label]) -> Self {
+        let n = surface.n_quads();
+        let mut section = Self {
+            surface,
+            labels,
+            vertex: Classes::new(surface.n_vertices()),
+            edge: Classes::new(4 * n),
+            quad: Classes::new(n),
+            left: vec![None; 4 * n],
+        };
+        for (q, label) in (0..n as u32).zip(labels) {
+            if !matches!(label, Label::Wall(_)) {
+                for i in 0..4 {
+                    let side = section.side(q, i) as usize;
+                    section.left[side] = Some((q, i));
+                }
+            }
+        }
+        for label in labels {
+            if let &Label::Wall(up) = label {
+                section.join(next(up), surface.twin(Dart(prev(up))).0);
+            }
+        }
+        section
+    }
+
+    /// Side `side` of a cap, counter-clockwise seen from above.
+    fn side(&self, cap: u32, side: usize) -> u32 {
+        match self.labels[cap as usize] {
+            Label::FacesUp => 4 * cap + side as u32,
+            _ => self.surface.twin(Dart(turn(4 * cap, 3 - side))).0,
+        }
+    }
+
+    /// Makes two directed edges one, and with them all that follows.
+    fn join(&mut self, a: u32, b: u32) {
+        let mut work = vec![(a, b)];
+        while let Some((a, b)) = work.pop() {
+            let (from, to) = (self.edge.root(a), self.edge.root(b));
+            if from == to {
+                continue;
+            }
+            self.edge.join(from, to);
+            let [one, other] = [a, b].map(Dart);
+            self.vertex.join(self.surface.origin(one).0, self.surface.origin(other).0);
+            self.vertex.join(self.surface.target(one).0, self.surface.target(other).0);
+            work.push((self.surface.twin(one).0, self.surface.twin(other).0));
+            let (kept, gone) = (from.min(to) as usize, from.max(to) as usize);
+            match (self.left[kept], self.left[gone]) {
+                // Two caps on the same side of one edge are one quad of the section.
+                (Some((p, i)), Some((q, j))) => {
+                    self.quad.join(p, q);
+                    (1..4).for_each(|k| work.push((self.side(p, (i + k) % 4), self.side(q, (j + k) % 4))));
+                }
+                (None, cap) => self.left[kept] = cap,
+                _ => {}
+            }
+        }
+    }
+}
+
+/// The hexes of the columns between caps; `None` if the caps are not, from low to high, floor and top in turn, or two vertices lie at one place.
+fn hexes(surface: &QuadSurface, labels: &[Label]) -> Option<Vec<[u32; 8]>> {
+    let height = heights(surface, labels)?;
+    let mut section = Section::new(surface, labels);
+    let mut at: FxHashMap<(u32, i32), u32> = FxHashMap::default();
+    for (v, &z) in (0..).zip(&height) {
+        if at.insert((section.vertex.root(v), z), v).is_some() {
+            return None;
+        }
+    }
+    // By quad of the section, low to high.
+    let mut caps: Vec<(u32, i32, u32)> = Vec::new();
+    for q in (0..surface.n_quads() as u32).filter(|&q| !matches!(labels[q as usize], Label::Wall(_))) {
+        caps.push((section.quad.root(q), height[surface.quads()[q as usize][0].index()], q));
+    }
+    caps.sort_unstable();
+    let mut hexes = Vec::new();
+    let mut n_vertices = surface.n_vertices() as u32;
+    let mut n_hexes = 0;
+    for pair in caps.chunks(2) {
+        let &[(quad, low, floor), (same, high, top)] = pair else { return None };
+        n_hexes += i64::from(high) - i64::from(low);
+        let is_column = labels[floor as usize] == Label::FacesDown && labels[top as usize] == Label::FacesUp;
+        if quad != same || low >= high || !is_column || n_hexes > MOST_HEXES {
+            return None;
+        }
+        let corners = surface.quads()[top as usize].map(|v| section.vertex.root(v.0));
+        let mut vertex = |corner: usize, z: i32| {
+            *at.entry((corners[corner], z)).or_insert_with(|| {
+                n_vertices += 1;
+                n_vertices - 1
+            })
+        };
+        for z in low..high {
+            hexes.push(std::array::from_fn(|k| vertex(k % 4, z + i32::from(k >= 4))));
+        }
+    }
+    let quads: Vec<[u32; 4]> = surface.quads_raw();
+    Front::try_from_parts(n_vertices, &quads, &hexes, &[]).ok()?;
+    Some(hexes)
+}
