@@ -4,7 +4,7 @@
 //! closings (`layer`) on the void (`void`) -> `lift` back to the fine surface. By flips: `front` what is left -> `lens` the
 //! smallest lens of its dual -> `zip` flips that empty it -> `sweep` until nothing is left. Both know by a pair table (`pairs`)
 //! what is joined already.
-//! Before them: `plug` cuts handles, `bridge` joins cavities to the outside. Without any sweep: `polycube`, `section`, `between`.
+//! Before them: `plug` cuts handles, `bridge` joins cavities to the outside. Without any sweep: `polycube`, `section`, `blocks`, `between`.
 //!
 //! | question | verb |
 //! |---|---|
@@ -24,6 +24,7 @@
 mod angles;
 mod between;
 mod blend;
+mod blocks;
 mod boundary_layers;
 mod bridge;
 mod cells;

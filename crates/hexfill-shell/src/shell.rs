@@ -4,6 +4,7 @@
 
 use crate::angles::wanted_hexes;
 use crate::between::between;
+use crate::blocks::blocks;
 use crate::compress::{Coarse, compress, uncompressed};
 use crate::develop::develop;
 use crate::deviation::{Deviation, deviation};
@@ -242,6 +243,9 @@ impl Keeper<'_> {
             return;
         }
         self.keep_direct(Stage::Columns, columns(surface, wanted), ctx);
+        if let Some(points) = self.points.filter(|_| self.shelling.meshes.is_empty()) {
+            self.keep_direct(Stage::Columns, blocks(surface, points), ctx);
+        }
         let given = self.points.filter(|_| surface.n_components() > 1 && surface.n_quads() <= MOST_FINE);
         self.keep_direct(Stage::Columns, given.and_then(|points| between(surface, points)), ctx);
     }
