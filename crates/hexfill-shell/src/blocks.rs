@@ -112,7 +112,8 @@ impl Solid {
         let n = part.vertices.len() as u32;
         let n_vertices = hexes.iter().flatten().max().map_or(0, |v| v + 1).max(n);
         self.points.resize((first + n_vertices - n) as usize, None);
-        self.hexes.extend(hexes.iter().map(|h| h.map(|v| if v < n { part.vertices[v as usize] } else { first + v - n })));
+        self.hexes
+            .extend(hexes.iter().map(|h| h.map(|v| if v < n { part.vertices[v as usize] } else { first + v - n })));
         Some(())
     }
 
@@ -122,9 +123,9 @@ impl Solid {
         let n_points = self.points.len();
         let mut best: Option<(usize, Cut, bool, bool)> = None;
         for cut in part.cuts() {
-            let tried = self.parted(&part, &cut).map(|sides| {
-                sides.map(|quads| (self.part(&quads).is_some_and(|p| p.filled().is_some()), quads.len()))
-            });
+            let tried = self
+                .parted(&part, &cut)
+                .map(|sides| sides.map(|quads| (self.part(&quads).is_some_and(|p| p.filled().is_some()), quads.len())));
             // Only a trial: the cut is made again if it is taken.
             self.points.truncate(n_points);
             best = match tried {
@@ -177,7 +178,11 @@ impl Solid {
         sides[0].extend(across.iter().map(|&[a, b, c, d]| [d, c, b, a]));
         sides[1].extend(across);
         let volume = |quads: &Quads| -> Option<f64> {
-            quads.iter().map(|q| q.map(|v| self.points[v as usize])).map(|[a, b, c, d]| Some(cone([a?, b?, c?, d?]))).sum()
+            quads
+                .iter()
+                .map(|q| q.map(|v| self.points[v as usize]))
+                .map(|[a, b, c, d]| Some(cone([a?, b?, c?, d?])))
+                .sum()
         };
         // A cut through the air has a part that is inside out.
         sides.iter().all(|quads| volume(quads).is_some_and(|v| v > 0.0)).then_some(sides)
@@ -297,9 +302,7 @@ impl Part {
         let inner = round.get(1..round.len().saturating_sub(1)).unwrap_or(&[]);
         let ahead: Vec<u32> = inner.iter().copied().filter(|&d| self.wanted[d as usize] >= PARTED).collect();
         // Squares with round holes meet in vertices of degree eight: one of the ways is plainly the straight one.
-        let bend = |&other: &u32| {
-            cosine(self.point(d), self.point(next(d)), self.point(next(other)))
-        };
+        let bend = |&other: &u32| cosine(self.point(d), self.point(next(d)), self.point(next(other)));
         let straightest = ahead.iter().copied().min_by(|a, b| bend(a).total_cmp(&bend(b)));
         match straightest {
             Some(d) if ahead.len() > 1 && bend(&d) < STRAIGHT => vec![d],
@@ -331,5 +334,110 @@ impl Part {
         darts.rotate_left(a);
         let rim = darts.iter().map(|&d| origin(d)).collect();
         Some(Cut { darts, rim, grid: [b - a, c - b] })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sweep::Swept;
+    use crate::test_surfaces::{boundary_of, judged, torus_at};
+    use std::collections::BTreeMap;
+    use std::f64::consts::FRAC_PI_2;
+
+    type Place<'a> = &'a dyn Fn(Vector) -> Vector;
+
+    /// A square of side 2 with a round hole, or without, and of some layers; at the places given, welded: its surface and number of hexes.
+    fn welded(parts: &[(bool, usize, Place<'_>)]) -> (QuadSurface, Vec<Vector>, usize) {
+        let mut ids = BTreeMap::new();
+        let (mut points, mut hexes) = (Vec::new(), Vec::new());
+        for &(hole, layers, place) in parts {
+            // Four patches of four quads along a side and two rings; without a hole they go on to the middle.
+            let point = |patch: usize, ring: usize, along: usize| {
+                let angle = FRAC_PI_2 * (along as f64 / 4.0 - 0.5);
+                let t = ring as f64 / 2.0;
+                let [x, y] = [
+                    1.0 * t + 0.5 * angle.cos() * (1.0 - t),
+                    (along as f64 / 2.0 - 1.0) * t + 0.5 * angle.sin() * (1.0 - t),
+                ];
+                (0..patch).fold([x, y], |[x, y], _| [-y, x])
+            };
+            let grid = |i: usize, j: usize| [i as f64 / 2.0 - 1.0, j as f64 / 2.0 - 1.0];
+            let ring = |n: usize| {
+                let (p, r, a) = (n / 8, n / 4 % 2, n % 4);
+                [point(p, r, a), point(p, r + 1, a), point(p, r + 1, a + 1), point(p, r, a + 1)]
+            };
+            let cell = |n: usize| {
+                let (i, j) = (n % 4, n / 4);
+                [grid(i, j), grid(i + 1, j), grid(i + 1, j + 1), grid(i, j + 1)]
+            };
+            let quads: Vec<[[f64; 2]; 4]> =
+                if hole { (0..32).map(ring).collect() } else { (0..16).map(cell).collect() };
+            for (quad, z) in quads.iter().flat_map(|q| (0..layers).map(move |z| (q, z))) {
+                let hex: [u32; 8] = std::array::from_fn(|k| {
+                    let [x, y] = quad[k % 4];
+                    let p = place([x + 1.0, y + 1.0, (z + k / 4) as f64 / 2.0]);
+                    let key = p.map(|x| (x * 1e6).round() as i64);
+                    *ids.entry(key).or_insert_with(|| {
+                        points.push(p);
+                        points.len() as u32 - 1
+                    })
+                });
+                // A place may be a reflection.
+                let at = [0, 1, 3, 4].map(|k| points[hex[k] as usize]);
+                let [a, b, c] = [1, 2, 3].map(|k| sub(at[k], at[0]));
+                let [i, j, k, l, m, n, o, p] = hex;
+                hexes.push(if hexfill_geometry::det(a, b, c) > 0.0 { hex } else { [m, n, o, p, i, j, k, l] });
+            }
+        }
+        let (surface, points) = boundary_of(&points, &hexes);
+        (surface, points, hexes.len())
+    }
+
+    fn check(parts: &[(bool, usize, Place<'_>)]) {
+        let (surface, points, known) = welded(parts);
+        assert!(columns(&surface, &wanted_hexes(&surface, Some(&points))).is_empty(), "one cut at least");
+        let hexes = blocks(&surface, &points).expect("blocks");
+        let n_vertices = hexes.iter().flatten().max().unwrap() + 1;
+        let swept = Swept { n_vertices, hexes, plugs: 0, front: Vec::new(), stopped: None };
+        assert_eq!(judged(&surface, &swept), known);
+    }
+
+    #[test]
+    fn bores_in_three_directions() {
+        let along_y: Place<'_> = &|[x, y, z]| [x + 2.0, z, y];
+        check(&[(true, 4, &|p| p), (true, 4, along_y)]);
+        check(&[(true, 4, &|p| p), (true, 4, along_y), (true, 4, &|[x, y, z]| [z, x + 2.0, y])]);
+    }
+
+    #[test]
+    fn a_box_with_lugs() {
+        check(&[
+            (false, 4, &|p| p),
+            (true, 2, &|[x, y, z]| [x + 2.0, y, z + 0.5]),
+            (true, 2, &|[x, y, z]| [z + 0.5, x + 2.0, y]),
+            (true, 2, &|[x, y, z]| [y, z + 0.5, x + 2.0]),
+        ]);
+    }
+
+    #[test]
+    fn brackets_whose_creases_pass_vertices_of_high_degree() {
+        let lying: [Place<'_>; 2] = [&|[x, y, z]| [x + 2.0, y, z], &|[x, y, z]| [x + 2.0, y + 2.0, z]];
+        let upright: [Place<'_>; 2] = [&|[x, y, z]| [z, y, x + 2.0], &|[x, y, z]| [z, y + 2.0, x + 2.0]];
+        // The legs are as thick as the square that joins them is long.
+        let joint: [Place<'_>; 2] = [&|p| p, &|[x, y, z]| [x, y + 2.0, z]];
+        for rows in [1, 2] {
+            let of =
+                |places: &[Place<'static>; 2], hole| places[..rows].iter().map(|&p| (hole, 4, p)).collect::<Vec<_>>();
+            check(&[of(&lying, true), of(&upright, true), of(&joint, false)].concat());
+        }
+    }
+
+    #[test]
+    fn what_has_no_cuts_is_left_alone() {
+        let (torus, points) = torus_at(12, 8);
+        assert!(blocks(&torus, &points).is_none());
+        let cube = hexfill_mesh::generate::cube_surface();
+        assert!(blocks(&cube, &[[0.0; 3]; 8]).is_none());
     }
 }

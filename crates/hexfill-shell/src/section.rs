@@ -5,20 +5,34 @@
 //! are one quad of the *section*. Taking that for all edges at once folds the surface onto the section, also where only a flat side shows its inner quads
 //! (folding as in Stallings 1983). Over each quad of the section the caps must be, from low to high, down, up, down, up: the columns are between.
 //!
-//! Round holes, curved walls and caps are no matter, as angles within a section are not looked at.
+//! Round holes, curved walls and caps are no matter, as angles within a section are not looked at; chamfers and countersinks are levels of their walls.
 //!
 //! Invariant: a corner of a hex is told by its vertex of the section and its height; a surface with two vertices at one such place is refused.
 //!
 //! Source: ours; sweeps that map one source to one target are Knupp's (1998), here the surface gives the map.
 
+use crate::angles::FLAT;
 use crate::classes::Classes;
 use crate::dart::{next, opposite, prev, turn};
 use crate::front::Front;
 use hexfill_mesh::{Dart, QuadSurface};
 use rustc_hash::FxHashMap;
 
-/// Edges that want fewer or more hexes than these are creases, between a cap and a wall.
-const FLAT: std::ops::Range<f32> = 1.5..2.5;
+/// How labels go from quad to quad; all in right angles.
+#[derive(Clone, Copy)]
+struct Rule {
+    /// A cap ends at edges that bend by more.
+    cap: f32,
+    /// A wall ends where the next quad would lean by more.
+    wall: f32,
+    /// Edges that bend by less leave the lean of a wall as it is; where all do, walls stay upright.
+    least: f32,
+}
+
+/// First as if every crease were one of a box. Then with chamfers and countersinks as levels of their walls: a cap ends at half a right angle, and a wall
+/// goes on over one.
+const RULES: [Rule; 2] =
+    [Rule { cap: 0.5, wall: 0.5, least: f32::INFINITY }, Rule { cap: 0.4, wall: 0.6, least: 0.25 }];
 /// Smooth patches that are tried as the first caps, the largest ones.
 const MOST_PATCHES: usize = 16;
 /// More hexes than this are not made.
@@ -36,24 +50,34 @@ enum Label {
 
 /// The hexes of every way to see the surface as a section with columns, vertices of the surface first. `wanted` is per dart.
 pub(crate) fn columns(surface: &QuadSurface, wanted: &[f32]) -> Vec<Vec<[u32; 8]>> {
+    // What an edge bends, more than flat if convex.
+    let bend: Vec<f32> = wanted.iter().map(|w| FLAT - w).collect();
+    let mut by_rule = RULES.into_iter().map(|rule| columns_by(rule, surface, &bend));
+    by_rule.find(|found| !found.is_empty()).unwrap_or_default()
+}
+
+fn columns_by(rule: Rule, surface: &QuadSurface, bend: &[f32]) -> Vec<Vec<[u32; 8]>> {
     let mut found = Vec::new();
     // Two patches of one way are both its caps.
     let mut is_cap = vec![false; surface.n_quads()];
-    for seed in patches(surface, wanted).into_iter().take(MOST_PATCHES) {
+    for seed in patches(rule, surface, bend).into_iter().take(MOST_PATCHES) {
         if is_cap[seed as usize] {
             continue;
         }
-        let Some(labels) = labels(surface, wanted, seed) else { continue };
-        (0..).zip(&labels).filter(|(_, l)| !matches!(l, Label::Wall(_))).for_each(|(q, _): (usize, _)| is_cap[q] = true);
+        let Some(labels) = labels(rule, surface, bend, seed) else { continue };
+        (0..)
+            .zip(&labels)
+            .filter(|(_, l)| !matches!(l, Label::Wall(_)))
+            .for_each(|(q, _): (usize, _)| is_cap[q] = true);
         found.extend(hexes(surface, &labels));
     }
     found
 }
 
 /// A quad of each smooth patch, largest patches first.
-fn patches(surface: &QuadSurface, wanted: &[f32]) -> Vec<u32> {
+fn patches(rule: Rule, surface: &QuadSurface, bend: &[f32]) -> Vec<u32> {
     let mut patch = Classes::new(surface.n_quads());
-    for d in surface.darts().filter(|d| FLAT.contains(&wanted[d.index()])) {
+    for d in surface.darts().filter(|d| bend[d.index()].abs() < rule.cap) {
         patch.join(d.quad().0, surface.twin(d).quad().0);
     }
     let mut size = vec![0u32; surface.n_quads()];
@@ -65,17 +89,20 @@ fn patches(surface: &QuadSurface, wanted: &[f32]) -> Vec<u32> {
 }
 
 /// What all quads are if `seed` is a cap that faces up; `None` if some quad would be two things.
-fn labels(surface: &QuadSurface, wanted: &[f32], seed: u32) -> Option<Vec<Label>> {
+fn labels(rule: Rule, surface: &QuadSurface, bend: &[f32], seed: u32) -> Option<Vec<Label>> {
     let mut labels = vec![Label::Unknown; surface.n_quads()];
+    // Per wall: how far it faces up (1: as a cap does) or down (-1).
+    let mut lean = vec![0.0; surface.n_quads()];
     labels[seed as usize] = Label::FacesUp;
     let mut work = vec![seed];
     while let Some(q) = work.pop() {
         for d in 4 * q..4 * q + 4 {
             let t = surface.twin(Dart(d)).0;
-            let label = beyond(labels[q as usize], d, t, wanted[d as usize]);
+            let (label, leans) = beyond(rule, labels[q as usize], lean[q as usize], d, t, bend[d as usize]);
             let slot = &mut labels[(t >> 2) as usize];
             if *slot == Label::Unknown {
                 *slot = label;
+                lean[(t >> 2) as usize] = leans;
                 work.push(t >> 2);
             }
             if *slot != label {
@@ -87,25 +114,33 @@ fn labels(surface: &QuadSurface, wanted: &[f32], seed: u32) -> Option<Vec<Label>
     (!labels.contains(&Label::Unknown)).then_some(labels)
 }
 
-/// What the quad beyond dart `d` is; `t` is its dart there. Seen from outside, a wall goes round counter-clockwise: up on the right, back along the top,
-/// down on the left.
-fn beyond(label: Label, d: u32, t: u32, wanted: f32) -> Label {
-    let is_flat = FLAT.contains(&wanted);
-    let is_convex = wanted < FLAT.start;
+/// What the quad beyond dart `d` is, and how it leans if it is a wall; `t` is its dart there. Seen from outside, a wall goes round counter-clockwise: up on
+/// the right, back along the top, down on the left.
+fn beyond(rule: Rule, label: Label, lean: f32, d: u32, t: u32, bend: f32) -> (Label, f32) {
     match label {
-        Label::Wall(up) if d == up => Label::Wall(opposite(t)),
-        Label::Wall(up) if d == opposite(up) => Label::Wall(t),
-        Label::Wall(up) => match (d == next(up), is_flat) {
-            (true, true) => Label::Wall(next(t)),
-            (false, true) => Label::Wall(prev(t)),
-            // The top of a wall ends at a cap above it, or at a ceiling.
-            (is_top, false) if is_top == is_convex => Label::FacesUp,
-            _ => Label::FacesDown,
-        },
-        _ if is_flat => label,
-        // A wall goes down from a convex edge of what faces up, and rises from a concave one.
-        _ if (label == Label::FacesUp) == is_convex => Label::Wall(prev(t)),
-        _ => Label::Wall(next(t)),
+        Label::Wall(up) if d == up => (Label::Wall(opposite(t)), lean),
+        Label::Wall(up) if d == opposite(up) => (Label::Wall(t), lean),
+        Label::Wall(up) => {
+            let is_top = d == next(up);
+            let turned = if is_top { lean + bend } else { lean - bend };
+            match (turned, is_top) {
+                (x, _) if x > rule.wall => (Label::FacesUp, 0.0),
+                (x, _) if x < -rule.wall => (Label::FacesDown, 0.0),
+                (x, true) => (Label::Wall(next(t)), if bend.abs() > rule.least { x } else { lean }),
+                (x, false) => (Label::Wall(prev(t)), if bend.abs() > rule.least { x } else { lean }),
+            }
+        }
+        _ if bend.abs() < rule.cap => (label, 0.0),
+        // A wall goes down from a convex edge of what faces up, and rises from a concave one. What is missing to a right angle is its lean.
+        _ => {
+            let missing = if bend.abs() > rule.least { 1.0 - bend.abs() } else { 0.0 };
+            match (label == Label::FacesUp, bend > 0.0) {
+                (true, true) => (Label::Wall(prev(t)), missing),
+                (true, false) => (Label::Wall(next(t)), missing),
+                (false, true) => (Label::Wall(next(t)), -missing),
+                (false, false) => (Label::Wall(prev(t)), -missing),
+            }
+        }
     }
 }
 
@@ -318,6 +353,30 @@ mod tests {
     }
 
     #[test]
+    fn chamfers_are_levels_of_walls() {
+        // The highest and lowest vertices of the outer and the inner wall go in by what a level is high.
+        let chamfered = |high: f64, depth: f64, [x, y, z]: [f64; 3]| {
+            let out = x.hypot(y);
+            let z = z - 0.02 * out * x;
+            let off = if z < 1e-9 || z > high - 1e-9 { depth } else { 0.0 };
+            let to = if out > 6.5 {
+                out - off
+            } else if out < 3.5 {
+                out + off
+            } else {
+                out
+            };
+            [x * to / out, y * to / out, z]
+        };
+        for depth in [0.0, 0.5, 0.9] {
+            let (surface, points, known) = turned([0; 4], [4; 4], [0; 4]);
+            let points: Vec<[f64; 3]> = points.into_iter().map(|p| chamfered(4.0, depth, p)).collect();
+            let made = filled(&surface, &points);
+            assert!(!made.is_empty() && made.iter().all(|&n| n == known), "{depth}: {made:?}");
+        }
+    }
+
+    #[test]
     fn voxel_solids_are_columns_or_refused() {
         let (mut found, mut tried) = (0, 0);
         for seed in 0..400 {
@@ -342,8 +401,11 @@ mod tests {
 
     #[test]
     fn what_has_no_caps_has_no_columns() {
-        let (torus, points) = torus_at(12, 8);
+        let (torus, points) = torus_at(12, 16);
         assert!(filled(&torus, &points).is_empty());
+        // With eight quads round the tube it has chamfers: one column of three hexes in each section, in four directions.
+        let (torus, points) = torus_at(12, 8);
+        assert_eq!(filled(&torus, &points), [36; 4]);
         let cube = hexfill_mesh::generate::cube_surface();
         assert!(columns(&cube, &[2.0; 24]).is_empty());
         assert_eq!(columns(&cube, &[1.0; 24]).len(), 3);

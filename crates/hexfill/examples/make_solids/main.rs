@@ -1,6 +1,6 @@
 //! Writes test surfaces for `tests/campaign.py`: `cargo run --release --example make_solids -- FOLDER [KIND...]`.
 //!
-//! KIND is `solids` (some 30 solids with a known good hex mesh), `turned` (parts made on a lathe), `milled` (16 parts milled out of plates, and 100 random ones), `voxels` (200 random ones of genus 0), `holes` (100 with tunnels and
+//! KIND is `solids` (some 30 solids with a known good hex mesh), `turned` (parts made on a lathe), `milled` (16 parts milled out of plates, 9 of several blocks, and 100 random ones), `voxels` (200 random ones of genus 0), `holes` (100 with tunnels and
 //! cavities), `balls` (cubed spheres and ellipsoids), `cut` (triangulated spheres cut into quads), `radial` (radial graphs), `smooth`
 //! (voxel solids refined and smoothed) or `mixed` (quad-dominant surfaces refined, with self-crossing chords); all these by default. `many`
 //! is 1,000 random surfaces of 30 to 300 quads of all these kinds, `canonical` 1,000 random spheres of 18 to 24 quads on their canonical polyhedra, both without
@@ -93,7 +93,7 @@ fn make(kind: &str, folder: &mut Folder) -> Result<(), Box<dyn Error>> {
             }
         }
         "milled" => {
-            for (name, solid) in milled::parts() {
+            for (name, solid) in milled::parts().into_iter().chain(milled::assembled()) {
                 folder.solid("milled", name, solid)?;
             }
             for seed in 0..100 {

@@ -1,4 +1,5 @@
-//! Parts that are milled out of plates: squares side by side, with round holes, pins, bosses, pockets and steps; flat, bent, or closed to a ring.
+//! Parts that are milled out of plates: squares side by side, with round holes, pins, bosses, pockets and steps; flat, bent, or closed to a ring; and parts of
+//! several such blocks, each with a direction of its own.
 
 use crate::section::{Section, between, unit};
 use crate::solid::{Point, Solid, Welder};
@@ -203,6 +204,64 @@ pub(crate) fn parts() -> Vec<(&'static str, Solid)> {
                 },
                 as_it_is,
             ),
+        ),
+    ]
+}
+
+/// Parts of several blocks by name. A square has sides of 2, a leg a thickness of 1.
+pub(crate) fn assembled() -> Vec<(&'static str, Solid)> {
+    let square = Section::square_with_round_hole(4, 2, 0.5);
+    let raised = |layers: usize, high: f64, place: &dyn Fn(Point) -> Point| {
+        Solid::swept(&square, layers, |_, _| true, |[x, y], t| place([x + 1.0, y + 1.0, high * t]))
+    };
+    let leg = |place: &dyn Fn(Point) -> Point| raised(2, 1.0, place);
+    let bored = |place: &dyn Fn(Point) -> Point| raised(4, 2.0, place);
+    let block = |n: [usize; 3], from: Point, size: Point| {
+        Solid::blocks(&[(n, &|p: Point| [0, 1, 2].map(|k| from[k] + size[k] * p[k]) as Point)])
+    };
+    // Where two legs meet, and the cube of one square.
+    let corner = |x: f64, rows: usize| block([2, 4 * rows, 2], [x, 0.0, 0.0], [1.0, 2.0 * rows as f64, 1.0]);
+    let bracket = |along: usize, rows: usize| {
+        let mut parts = vec![corner(0.0, rows)];
+        for (i, j) in (0..along).flat_map(|i| (0..rows).map(move |j| (2.0 * i as f64, 2.0 * j as f64))) {
+            parts.push(leg(&|[x, y, z]| [x + i + 1.0, y + j, z]));
+            parts.push(leg(&|[x, y, z]| [z, y + j, x + i + 1.0]));
+        }
+        Solid::joined(&parts)
+    };
+    let upright = |at: f64| leg(&move |[x, y, z]| [z + at, y, x + 1.0]);
+    let lying = |at: f64| leg(&move |[x, y, z]| [x + at, y, z]);
+    vec![
+        ("bracket", bracket(1, 1)),
+        ("bracket_long", bracket(2, 1)),
+        ("bracket_wide", bracket(2, 2)),
+        ("bracket_bent", bracket(2, 1).mapped(|[x, y, z]| [x + 0.05 * y * z, y - 0.03 * x * z, z + 0.04 * x * x])),
+        ("tee", Solid::joined(&[lying(0.0), corner(2.0, 1), lying(3.0), upright(2.0)])),
+        ("clevis", Solid::joined(&[corner(0.0, 1), lying(1.0), corner(3.0, 1), upright(0.0), upright(3.0)])),
+        (
+            "lugs",
+            Solid::joined(&[
+                block([4; 3], [0.0; 3], [2.0; 3]),
+                leg(&|[x, y, z]| [x + 2.0, y, z + 0.5]),
+                leg(&|[x, y, z]| [z + 0.5, x + 2.0, y]),
+                leg(&|[x, y, z]| [y, z + 0.5, x + 2.0]),
+            ]),
+        ),
+        (
+            "two_bores",
+            Solid::joined(&[
+                bored(&|p| p),
+                block([4; 3], [2.0, 0.0, 0.0], [2.0; 3]),
+                bored(&|[x, y, z]| [x + 4.0, z, y]),
+            ]),
+        ),
+        (
+            "three_bores",
+            Solid::joined(&[
+                bored(&|p| p),
+                bored(&|[x, y, z]| [x + 2.0, z, y]),
+                bored(&|[x, y, z]| [z, x + 2.0, y]),
+            ]),
         ),
     ]
 }

@@ -108,6 +108,16 @@ impl Solid {
         Self { points: welder.points, hexes }.settled()
     }
 
+    /// Several meshes, welded where they meet.
+    pub(crate) fn joined(parts: &[Self]) -> Self {
+        let mut welder = Welder::default();
+        let mut hexes = Vec::new();
+        for part in parts {
+            hexes.extend(part.hexes.iter().map(|h| h.map(|v| welder.id(part.points[v as usize]))));
+        }
+        Self { points: welder.points, hexes }.settled()
+    }
+
     /// The same mesh, moved.
     #[must_use]
     pub(crate) fn mapped(self, map: impl Fn(Point) -> Point) -> Self {
