@@ -3,13 +3,14 @@
 //! Idea: where every crease is a right angle, one quad called a *cap* tells for all others whether they are caps (facing up or down) or walls, and how
 //! high each vertex lies in edges. Walls are upright, so every cap is seen from above as it is; caps that share an edge seen from above, on the same side,
 //! are one quad of the *section*. Taking that for all edges at once folds the surface onto the section, also where only a flat side shows its inner quads
-//! (folding as in Stallings 1983). Over each quad of the section the caps must be, from low to high, down, up, down, up: the columns are between.
+//! (words are folded onto graphs so). Over each quad of the section the caps must be, from low to high, down, up, down, up: the columns are between.
 //!
 //! Round holes, curved walls and caps are no matter, as angles within a section are not looked at; chamfers and countersinks are levels of their walls.
 //!
 //! Invariant: a corner of a hex is told by its vertex of the section and its height; a surface with two vertices at one such place is refused.
 //!
-//! Source: ours; sweeps that map one source to one target are Knupp's (1998), here the surface gives the map.
+//! Source: ours; the folding is that of Stallings 1983; sweeps with several sources and targets are Mingwu et al. 1996 (abstract), which imprint caps on each
+//! other: here the surface says already how they lie.
 
 use crate::angles::FLAT;
 use crate::classes::Classes;
