@@ -230,7 +230,7 @@ impl Part {
     fn filled(&self) -> Option<Hexes> {
         develop(&self.surface, &self.wanted, Some(&self.points))
             .and_then(|d| polycube(&self.surface, &d))
-            .or_else(|| columns(&self.surface, &self.wanted).into_iter().next())
+            .or_else(|| columns(&self.surface, &self.wanted, None).into_iter().next())
     }
 
     /// Loops that have cuts, those through concave creases first.
@@ -396,7 +396,7 @@ mod tests {
 
     fn check(parts: &[(bool, usize, Place<'_>)]) {
         let (surface, points, known) = welded(parts);
-        assert!(columns(&surface, &wanted_hexes(&surface, Some(&points))).is_empty(), "one cut at least");
+        assert!(columns(&surface, &wanted_hexes(&surface, Some(&points)), None).is_empty(), "one cut at least");
         let hexes = blocks(&surface, &points).expect("blocks");
         let n_vertices = hexes.iter().flatten().max().unwrap() + 1;
         let swept = Swept { n_vertices, hexes, plugs: 0, front: Vec::new(), stopped: None };

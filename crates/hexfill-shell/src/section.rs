@@ -5,7 +5,7 @@
 //! are one quad of the *section*. Taking that for all edges at once folds the surface onto the section, also where only a flat side shows its inner quads
 //! (words are folded onto graphs so). Over each quad of the section the caps must be, from low to high, down, up, down, up: the columns are between.
 //!
-//! Round holes, curved walls and caps are no matter, as angles within a section are not looked at; chamfers and countersinks are levels of their walls.
+//! Round holes, curved walls and caps are no matter, as angles within a section are not looked at; chamfers and countersinks are levels of their walls. Where edges are rounded, caps are what faces an axis.
 //!
 //! Invariant: a corner of a hex is told by its vertex of the section and its height; a surface with two vertices at one such place is refused.
 //!
@@ -16,6 +16,7 @@ use crate::angles::FLAT;
 use crate::classes::Classes;
 use crate::dart::{next, opposite, prev, turn};
 use crate::front::Front;
+use hexfill_geometry::{Vector, add_scaled, cross, direction, dot, norm, scale, sub, unit};
 use hexfill_mesh::{Dart, QuadSurface};
 use rustc_hash::FxHashMap;
 
@@ -39,6 +40,16 @@ const MOST_PATCHES: usize = 16;
 /// More hexes than this are not made.
 const MOST_HEXES: i64 = 4_000_000;
 
+/// Directions that are tried where creases do not tell caps from walls, and of how many quads they are taken.
+const MOST_AXES: usize = 3;
+const SAMPLES: usize = 60;
+/// How often an axis is made that of its caps.
+const STRAIGHTENED: usize = 4;
+/// The cosine from which on a quad faces an axis, and that from which on it is a cap. The latter is that of 49 degrees, as rounded edges often have a quad at
+/// 45, which belongs to one side on all of them.
+const PARALLEL: f64 = 0.98;
+const CAP: f64 = 0.65;
+
 /// What a quad is, for somebody who knows where up is.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 enum Label {
@@ -49,12 +60,72 @@ enum Label {
     Wall(u32),
 }
 
-/// The hexes of every way to see the surface as a section with columns, vertices of the surface first. `wanted` is per dart.
-pub(crate) fn columns(surface: &QuadSurface, wanted: &[f32]) -> Vec<Vec<[u32; 8]>> {
+/// The hexes of every way to see the surface as a section with columns, vertices of the surface first. `wanted` is per dart; where creases do not tell
+/// caps from walls, `points` may.
+pub(crate) fn columns(surface: &QuadSurface, wanted: &[f32], points: Option<&[Vector]>) -> Vec<Vec<[u32; 8]>> {
     // What an edge bends, more than flat if convex.
     let bend: Vec<f32> = wanted.iter().map(|w| FLAT - w).collect();
     let mut by_rule = RULES.into_iter().map(|rule| columns_by(rule, surface, &bend));
-    by_rule.find(|found| !found.is_empty()).unwrap_or_default()
+    if let Some(found) = by_rule.find(|found| !found.is_empty()) {
+        return found;
+    }
+    let Some(points) = points.filter(|_| surface.n_components() == 1) else { return Vec::new() };
+    let normals: Vec<Vector> = surface.quads().iter().map(|q| area(q.map(|v| points[v.index()]))).collect();
+    axes(&normals)
+        .into_iter()
+        .filter_map(|axis| hexes(surface, &labels_along(surface, points, &normals, axis)))
+        .collect()
+}
+
+/// The vector area of a quad.
+fn area([a, b, c, d]: [Vector; 4]) -> Vector {
+    scale(0.5, cross(sub(c, a), sub(d, b)))
+}
+
+/// Up to [`MOST_AXES`] directions that much of the surface faces, or faces away from; those of the largest areas.
+fn axes(normals: &[Vector]) -> Vec<Vector> {
+    let step = normals.len().div_ceil(SAMPLES);
+    let facing = |axis: Vector| -> f64 {
+        let along = normals.iter().map(|&n| (dot(n, axis).abs(), norm(n)));
+        along.filter(|(along, area)| *along > PARALLEL * area).map(|(_, area)| area).sum()
+    };
+    // What faces an axis roughly says better where it points than one quad, on a torus as on a plate with a few dents.
+    let straightened = |axis: Vector| {
+        let caps = normals.iter().filter(|&&n| dot(n, axis).abs() > CAP * norm(n));
+        unit(caps.fold([0.0; 3], |sum, &n| add_scaled(sum, dot(n, axis).signum(), n)))
+    };
+    let mut found: Vec<(f64, Vector)> = normals
+        .iter()
+        .step_by(step)
+        .filter_map(|&n| (0..STRAIGHTENED).try_fold(unit(n)?, |axis, _| straightened(axis)))
+        .map(|axis| (facing(axis), axis))
+        .collect();
+    // Stable: equals in the order of their quads.
+    found.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut axes: Vec<Vector> = Vec::new();
+    for (_, axis) in found {
+        if axes.len() < MOST_AXES && axes.iter().all(|&other| dot(axis, other).abs() < CAP) {
+            axes.push(axis);
+        }
+    }
+    axes
+}
+
+/// What quads are by how they face: caps along an axis, walls across it, whose edge nearest to it leads up.
+fn labels_along(surface: &QuadSurface, points: &[Vector], normals: &[Vector], axis: Vector) -> Vec<Label> {
+    let rise = |d: u32| {
+        let [a, b] = [surface.origin(Dart(d)), surface.target(Dart(d))].map(|v| points[v.index()]);
+        direction(a, b).map_or(0.0, |along| dot(along, axis))
+    };
+    let label = |(q, &normal): (u32, &Vector)| match dot(normal, axis) / norm(normal) {
+        x if x > CAP => Label::FacesUp,
+        x if x < -CAP => Label::FacesDown,
+        _ => {
+            let up = (4 * q..4 * q + 4).max_by(|&a, &b| rise(a).total_cmp(&rise(b)));
+            Label::Wall(up.expect("a quad has four darts"))
+        }
+    };
+    (0..).zip(normals).map(label).collect()
 }
 
 fn columns_by(rule: Rule, surface: &QuadSurface, bend: &[f32]) -> Vec<Vec<[u32; 8]>> {
@@ -304,7 +375,7 @@ mod tests {
 
     /// Judges all ways to fill a surface; the hexes of each.
     fn filled(surface: &QuadSurface, points: &[[f64; 3]]) -> Vec<usize> {
-        let found = columns(surface, &wanted_hexes(surface, Some(points)));
+        let found = columns(surface, &wanted_hexes(surface, Some(points)), Some(points));
         let judge = |hexes: Vec<[u32; 8]>| {
             let n_vertices = hexes.iter().flatten().max().unwrap() + 1;
             judged(surface, &Swept { n_vertices, hexes, plugs: 0, front: Vec::new(), stopped: None })
@@ -378,6 +449,13 @@ mod tests {
     }
 
     #[test]
+    fn a_torus_is_columns_along_its_axis() {
+        let (torus, points) = torus_at(12, 16);
+        assert!(columns(&torus, &wanted_hexes(&torus, Some(&points)), None).is_empty(), "no edge bends enough");
+        assert_eq!(filled(&torus, &points), [12 * 4 * 4]);
+    }
+
+    #[test]
     fn voxel_solids_are_columns_or_refused() {
         let (mut found, mut tried) = (0, 0);
         for seed in 0..400 {
@@ -402,13 +480,13 @@ mod tests {
 
     #[test]
     fn what_has_no_caps_has_no_columns() {
-        let (torus, points) = torus_at(12, 16);
-        assert!(filled(&torus, &points).is_empty());
+        let surface = hexfill_mesh::generate::random_sphere(60, 1).unwrap();
+        assert!(columns(&surface, &[2.0; 240], None).is_empty());
         // With eight quads round the tube it has chamfers: one column of three hexes in each section, in four directions.
         let (torus, points) = torus_at(12, 8);
         assert_eq!(filled(&torus, &points), [36; 4]);
         let cube = hexfill_mesh::generate::cube_surface();
-        assert!(columns(&cube, &[2.0; 24]).is_empty());
-        assert_eq!(columns(&cube, &[1.0; 24]).len(), 3);
+        assert!(columns(&cube, &[2.0; 24], None).is_empty());
+        assert_eq!(columns(&cube, &[1.0; 24], None).len(), 3);
     }
 }

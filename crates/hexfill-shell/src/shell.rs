@@ -242,9 +242,15 @@ impl Keeper<'_> {
         if self.shelling.is_perfect() {
             return;
         }
-        self.keep_direct(Stage::Columns, columns(surface, wanted), ctx);
-        if let Some(points) = self.points.filter(|_| self.shelling.meshes.is_empty()) {
-            self.keep_direct(Stage::Columns, blocks(surface, points), ctx);
+        let mut upright = columns(surface, wanted, self.points);
+        if let Some(points) = self.points.filter(|_| upright.is_empty()) {
+            upright.extend(blocks(surface, points));
+        }
+        // What is rounded or leans finds its right angles behind a pillow.
+        let behind: Vec<Glued> = upright.iter().map(|hexes| pillowed_columns(surface, hexes)).collect();
+        self.keep_direct(Stage::Columns, upright, ctx);
+        if !self.shelling.is_perfect() && self.options.pillows != [0] {
+            self.keep(self.fine, 1, behind, ctx);
         }
         let given = self.points.filter(|_| surface.n_components() > 1 && surface.n_quads() <= MOST_FINE);
         self.keep_direct(Stage::Columns, given.and_then(|points| between(surface, points)), ctx);
@@ -375,6 +381,19 @@ impl Glued {
     fn at_once(stage: Stage, hexes: Hexes) -> Self {
         Self { stages: vec![(stage, hexes.len())], hexes }
     }
+}
+
+/// Columns inside a copy of the surface, with a hex between each quad and its copy.
+fn pillowed_columns(surface: &QuadSurface, columns: &[[u32; 8]]) -> Glued {
+    let n = surface.n_vertices() as u32;
+    let first = columns.iter().flatten().max().map_or(0, |v| v + 1).max(n);
+    let copy = |v: u32| if v < n { first + v } else { v };
+    let pillow = surface.quads_raw().into_iter().map(|q: [u32; 4]| {
+        let [a, b, c, d] = q;
+        [copy(a), copy(b), copy(c), copy(d), a, b, c, d]
+    });
+    let hexes: Hexes = pillow.chain(columns.iter().map(|h| h.map(copy))).collect();
+    Glued { stages: vec![(Stage::Pillows, surface.n_quads()), (Stage::Columns, hexes.len())], hexes }
 }
 
 /// Where sweeps start: the surface, perhaps behind pillows and cut by plugs.

@@ -228,7 +228,9 @@ fn one_of_many(seed: u64) -> (&'static str, spheres::Surface) {
 fn main() -> Result<(), Box<dyn Error>> {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let Some((path, kinds)) = words.split_first() else {
-        return Err("usage: make_solids FOLDER [solids|turned|milled|voxels|holes|balls|cut|radial|smooth|mixed ...]".into());
+        return Err(
+            "usage: make_solids FOLDER [solids|turned|milled|voxels|holes|balls|cut|radial|smooth|mixed ...]".into()
+        );
     };
     let mut folder = Folder { path: Path::new(path).to_owned(), facts: Map::new() };
     std::fs::create_dir_all(folder.path.join("reference"))?;

@@ -257,11 +257,7 @@ pub(crate) fn assembled() -> Vec<(&'static str, Solid)> {
         ),
         (
             "three_bores",
-            Solid::joined(&[
-                bored(&|p| p),
-                bored(&|[x, y, z]| [x + 2.0, z, y]),
-                bored(&|[x, y, z]| [z, x + 2.0, y]),
-            ]),
+            Solid::joined(&[bored(&|p| p), bored(&|[x, y, z]| [x + 2.0, z, y]), bored(&|[x, y, z]| [z, x + 2.0, y])]),
         ),
     ]
 }

@@ -462,7 +462,9 @@ impl<'a> Trial<'a> {
             }
             // The bound is a theorem for this mesh: no positions of inner vertices beat it. Something must be
             // returned, so the first one is kept all the same.
-            if bound <= NO_ROOM && !self.is_first_of(filled.route) {
+            let reaches = (0, within(filled.mesh.n_hexes(), bound, prefer));
+            let is_beaten = is_shelled && self.best.as_ref().is_some_and(|leader| leader.rank <= reaches);
+            if is_beaten || bound <= NO_ROOM && !self.is_first_of(filled.route) {
                 self.seen.push(Candidate::new(&filled, Outcome::Bounded(bound)));
                 return Ok(());
             }
