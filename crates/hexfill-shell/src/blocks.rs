@@ -230,7 +230,7 @@ impl Part {
     fn filled(&self) -> Option<Hexes> {
         develop(&self.surface, &self.wanted, Some(&self.points))
             .and_then(|d| polycube(&self.surface, &d))
-            .or_else(|| columns(&self.surface, &self.wanted, None).into_iter().next())
+            .or_else(|| columns(&self.surface, &self.wanted, None).into_iter().next().map(|made| made.hexes))
     }
 
     /// Loops that have cuts, those through concave creases first.

@@ -60,9 +60,45 @@ enum Label {
     Wall(u32),
 }
 
+/// Columns over a section.
+#[derive(Clone, Debug)]
+pub(crate) struct Columns {
+    /// Vertices of the surface first.
+    pub hexes: Vec<[u32; 8]>,
+    /// Per vertex: the one of the section, and how high above it in edges.
+    places: Vec<(u32, i32)>,
+}
+
+impl Columns {
+    /// Positions of all vertices, those inside spread evenly between the ends of their columns; `points` are the surface's.
+    pub(crate) fn spread(&self, points: &[Vector]) -> Option<Vec<Vector>> {
+        let mut column: Vec<u32> = (0..self.places.len() as u32).collect();
+        column.sort_unstable_by_key(|&v| self.places[v as usize]);
+        let mut at: Vec<Option<Vector>> = points.iter().copied().map(Some).collect();
+        at.resize(self.places.len(), None);
+        let mut below: Option<u32> = None;
+        for (i, &v) in column.iter().enumerate() {
+            let (section, z) = self.places[v as usize];
+            if (v as usize) < points.len() {
+                below = Some(v);
+                continue;
+            }
+            let above = column[i..].iter().find(|&&w| (w as usize) < points.len());
+            let ends = [below?, *above?];
+            if ends.iter().any(|&w| self.places[w as usize].0 != section) {
+                return None;
+            }
+            let [low, high] = ends.map(|w| self.places[w as usize].1);
+            let [a, b] = ends.map(|w| points[w as usize]);
+            at[v as usize] = Some(add_scaled(a, f64::from(z - low) / f64::from(high - low), sub(b, a)));
+        }
+        at.into_iter().collect()
+    }
+}
+
 /// The hexes of every way to see the surface as a section with columns, vertices of the surface first. `wanted` is per dart; where creases do not tell
 /// caps from walls, `points` may.
-pub(crate) fn columns(surface: &QuadSurface, wanted: &[f32], points: Option<&[Vector]>) -> Vec<Vec<[u32; 8]>> {
+pub(crate) fn columns(surface: &QuadSurface, wanted: &[f32], points: Option<&[Vector]>) -> Vec<Columns> {
     // What an edge bends, more than flat if convex.
     let bend: Vec<f32> = wanted.iter().map(|w| FLAT - w).collect();
     let mut by_rule = RULES.into_iter().map(|rule| columns_by(rule, surface, &bend));
@@ -128,7 +164,7 @@ fn labels_along(surface: &QuadSurface, points: &[Vector], normals: &[Vector], ax
     (0..).zip(normals).map(label).collect()
 }
 
-fn columns_by(rule: Rule, surface: &QuadSurface, bend: &[f32]) -> Vec<Vec<[u32; 8]>> {
+fn columns_by(rule: Rule, surface: &QuadSurface, bend: &[f32]) -> Vec<Columns> {
     let mut found = Vec::new();
     // Two patches of one way are both its caps.
     let mut is_cap = vec![false; surface.n_quads()];
@@ -323,7 +359,7 @@ impl<'a> Section<'a> {
 }
 
 /// The hexes of the columns between caps; `None` if the caps are not, from low to high, floor and top in turn, or two vertices lie at one place.
-fn hexes(surface: &QuadSurface, labels: &[Label]) -> Option<Vec<[u32; 8]>> {
+fn hexes(surface: &QuadSurface, labels: &[Label]) -> Option<Columns> {
     let height = heights(surface, labels)?;
     let mut section = Section::new(surface, labels);
     let mut at: FxHashMap<(u32, i32), u32> = FxHashMap::default();
@@ -361,7 +397,9 @@ fn hexes(surface: &QuadSurface, labels: &[Label]) -> Option<Vec<[u32; 8]>> {
     }
     let quads: Vec<[u32; 4]> = surface.quads_raw();
     Front::try_from_parts(n_vertices, &quads, &hexes, &[]).ok()?;
-    Some(hexes)
+    let mut places = vec![(0, 0); n_vertices as usize];
+    at.into_iter().for_each(|(place, v)| places[v as usize] = place);
+    Some(Columns { hexes, places })
 }
 
 #[cfg(test)]
@@ -376,7 +414,7 @@ mod tests {
     /// Judges all ways to fill a surface; the hexes of each.
     fn filled(surface: &QuadSurface, points: &[[f64; 3]]) -> Vec<usize> {
         let found = columns(surface, &wanted_hexes(surface, Some(points)), Some(points));
-        let judge = |hexes: Vec<[u32; 8]>| {
+        let judge = |Columns { hexes, .. }: Columns| {
             let n_vertices = hexes.iter().flatten().max().unwrap() + 1;
             judged(surface, &Swept { n_vertices, hexes, plugs: 0, front: Vec::new(), stopped: None })
         };
@@ -446,6 +484,23 @@ mod tests {
             let made = filled(&surface, &points);
             assert!(!made.is_empty() && made.iter().all(|&n| n == known), "{depth}: {made:?}");
         }
+    }
+
+    #[test]
+    fn what_is_inside_lies_evenly_between_caps() {
+        let (surface, points) = voxel_points([3, 4, 5], |[x, y, z]| z < 3 || x == 0 || y > 0).unwrap();
+        let made = columns(&surface, &wanted_hexes(&surface, Some(&points)), Some(&points));
+        for columns in &made {
+            let mut at = columns.spread(&points).unwrap();
+            assert_eq!(at[..points.len()], points);
+            // Every point of the grid once.
+            let n = at.len();
+            at.iter_mut().for_each(|p| *p = p.map(|x| (x * 1e6).round()));
+            at.sort_by(|a, b| a.partial_cmp(b).unwrap());
+            at.dedup();
+            assert!(at.len() == n && at.iter().flatten().all(|x| x % 1e6 == 0.0), "{at:?}");
+        }
+        assert!(!made.is_empty());
     }
 
     #[test]

@@ -18,6 +18,8 @@ use crate::stir::stir_front;
 use crate::sweep::sweep_front;
 use crate::sweep_options::SweepOptions;
 use crate::void::Void;
+use hexfill_geometry::{det, sub};
+use hexfill_mesh::cube::{POSITIONS, corner_at};
 use hexfill_mesh::{Context, HexMesh, QuadSurface};
 use hexfill_search::Atlas;
 use rayon::prelude::*;
@@ -120,6 +122,8 @@ pub struct Shelled {
     pub mesh: HexMesh,
     /// A first guess at all positions, if those of the surface were given; the surface's own come first, bit for bit.
     pub points: Option<Vec<[f64; 3]>>,
+    /// Whether these are no guess: every corner is positive.
+    pub is_placed: bool,
     /// How far its edges are from the hexes they want: 0 is perfect.
     pub cost: f32,
     /// Pillows under the surface.
@@ -238,27 +242,31 @@ impl Keeper<'_> {
             return;
         }
         let cells = develop(surface, wanted, self.points).and_then(|d| polycube(surface, &d));
-        self.keep_direct(Stage::Grid, cells, ctx);
+        self.keep_direct(cells.map(|hexes| Glued::at_once(Stage::Grid, hexes)), ctx);
         if self.shelling.is_perfect() {
             return;
         }
-        let mut upright = columns(surface, wanted, self.points);
+        let upright = columns(surface, wanted, self.points).into_iter().map(|made| Glued {
+            start: self.points.and_then(|points| made.spread(points)),
+            ..Glued::at_once(Stage::Columns, made.hexes)
+        });
+        let mut upright: Vec<Glued> = upright.collect();
         if let Some(points) = self.points.filter(|_| upright.is_empty()) {
-            upright.extend(blocks(surface, points));
+            upright.extend(blocks(surface, points).map(|hexes| Glued::at_once(Stage::Columns, hexes)));
         }
         // What is rounded or leans finds its right angles behind a pillow.
-        let behind: Vec<Glued> = upright.iter().map(|hexes| pillowed_columns(surface, hexes)).collect();
-        self.keep_direct(Stage::Columns, upright, ctx);
+        let behind: Vec<Glued> = upright.iter().map(|made| pillowed_columns(surface, &made.hexes)).collect();
+        self.keep_direct(upright, ctx);
         if !self.shelling.is_perfect() && self.options.pillows != [0] {
             self.keep(self.fine, 1, behind, ctx);
         }
         let given = self.points.filter(|_| surface.n_components() > 1 && surface.n_quads() <= MOST_FINE);
-        self.keep_direct(Stage::Columns, given.and_then(|points| between(surface, points)), ctx);
+        let between = given.and_then(|points| between(surface, points));
+        self.keep_direct(between.map(|hexes| Glued::at_once(Stage::Columns, hexes)), ctx);
     }
 
-    fn keep_direct(&mut self, stage: Stage, meshes: impl IntoIterator<Item = Hexes>, ctx: &Context<'_>) {
-        let glued: Vec<Glued> = meshes.into_iter().map(|hexes| Glued::at_once(stage, hexes)).collect();
-        if self.keep(self.fine, 0, glued, ctx) > 0 {
+    fn keep_direct(&mut self, meshes: impl IntoIterator<Item = Glued>, ctx: &Context<'_>) {
+        if self.keep(self.fine, 0, meshes.into_iter().collect(), ctx) > 0 {
             self.shelling.left = 0;
         }
     }
@@ -365,7 +373,16 @@ impl Keeper<'_> {
         let is_compressed = glued.hexes.len() < mesh.n_hexes();
         let points = self.shared.as_ref().filter(|_| is_compressed);
         let coarse = points.and_then(|points| CoarseMesh::new(coarse, points, &glued.hexes));
-        Some(Shelled { mesh, points: lifted.points, cost, pillows, stages, coarse })
+        // Lifting names inner vertices anew.
+        let start = glued.start.as_ref().filter(|_| !is_compressed).map(|start| {
+            let mut at = vec![[0.0; 3]; mesh.n_vertices()];
+            let corners = lifted.hexes.iter().flatten().zip(glued.hexes.iter().flatten());
+            corners.for_each(|(&new, &old)| at[new as usize] = start[old as usize]);
+            at
+        });
+        let placed = start.filter(|at| is_valid(&lifted.hexes, at));
+        let is_placed = placed.is_some();
+        Some(Shelled { mesh, points: placed.or(lifted.points), is_placed, cost, pillows, stages, coarse })
     }
 }
 
@@ -375,12 +392,28 @@ type Hexes = Vec<[u32; 8]>;
 struct Glued {
     hexes: Hexes,
     stages: Vec<(Stage, usize)>,
+    /// Positions of all vertices, where the engine knows some that may be valid.
+    start: Option<Vec<[f64; 3]>>,
 }
 
 impl Glued {
     fn at_once(stage: Stage, hexes: Hexes) -> Self {
-        Self { stages: vec![(stage, hexes.len())], hexes }
+        Self { stages: vec![(stage, hexes.len())], hexes, start: None }
     }
+}
+
+/// Whether the determinant is positive at every corner.
+fn is_valid(hexes: &[[u32; 8]], points: &[[f64; 3]]) -> bool {
+    let corner = |hex: &[u32; 8], k: usize| {
+        let [x, y, z] = [0, 1, 2].map(|axis| {
+            let mut p = POSITIONS[k];
+            p[axis] ^= 1;
+            let [from, to] = [k, corner_at(p[0], p[1], p[2])].map(|i| points[hex[i] as usize]);
+            if p[axis] == 1 { sub(to, from) } else { sub(from, to) }
+        });
+        det(x, y, z) > 0.0
+    };
+    hexes.iter().all(|hex| (0..8).all(|k| corner(hex, k)))
 }
 
 /// Columns inside a copy of the surface, with a hex between each quad and its copy.
@@ -393,7 +426,7 @@ fn pillowed_columns(surface: &QuadSurface, columns: &[[u32; 8]]) -> Glued {
         [copy(a), copy(b), copy(c), copy(d), a, b, c, d]
     });
     let hexes: Hexes = pillow.chain(columns.iter().map(|h| h.map(copy))).collect();
-    Glued { stages: vec![(Stage::Pillows, surface.n_quads()), (Stage::Columns, hexes.len())], hexes }
+    Glued { stages: vec![(Stage::Pillows, surface.n_quads()), (Stage::Columns, hexes.len())], hexes, start: None }
 }
 
 /// Where sweeps start: the surface, perhaps behind pillows and cut by plugs.
@@ -520,7 +553,7 @@ impl<'a> Start<'a> {
             (Stage::Flips, after_flips),
             (Stage::Residual, hexes.len()),
         ];
-        Glued { hexes, stages }
+        Glued { hexes, stages, start: None }
     }
 }
 

@@ -455,8 +455,9 @@ impl<'a> Trial<'a> {
                 return Ok(());
             }
         }
+        let mut bound = 1.0;
         if is_shelled || matches!(filled.route, Route::Laying | Route::Construction) {
-            let bound = quick_star_bound(&filled.mesh, self.boundary).unwrap_or(1.0);
+            bound = quick_star_bound(&filled.mesh, self.boundary).unwrap_or(1.0);
             if let Some(split) = self.split(&filled, bound)? {
                 self.consider(split)?;
             }
@@ -475,8 +476,9 @@ impl<'a> Trial<'a> {
                 .embed
                 .with_starts(self.embed.starts().max(1))
                 .with_programs(self.embed.programs().min(self.budget.screening))
-                .with_smooth_start(is_guess);
+                .with_smooth_start(is_guess && !filled.is_placed);
             let placed = place_as_it_is(&filled, self.boundary, Some(&one), &self.limited());
+            let placed = self.placed_from_guess(&filled, placed, &one, bound);
             self.placed_from_coarse(&filled, placed, one)
         } else {
             let mut how = self.embed.with_programs(self.embed.programs().min(self.budget.others));
@@ -507,6 +509,18 @@ impl<'a> Trial<'a> {
             self.best = Some(Leader { rank, filled, placed, is_polished: false });
         }
         Ok(())
+    }
+
+    /// A mesh that was placed from positions of its own, or placed once more as if these were a guess, if it is not as good as its star bound.
+    fn placed_from_guess(&self, filled: &Filled, placed: Placed, how: &hexfill_embed::Options, bound: f64) -> Placed {
+        if !filled.is_placed || placed.is_certified() && placed.worst() >= REACHED * bound || self.ctx.stop().is_some()
+        {
+            return placed;
+        }
+        let how = how.with_smooth_start(true);
+        let again = place_as_it_is(filled, self.boundary, Some(&how), &self.limited());
+        let rank = |placed| rank(filled, placed, self.options.prefer, self.boundary.len());
+        if rank(&again) < rank(&placed) { again } else { placed }
     }
 
     /// A mesh that was placed, or placed once more if it is not good: from the positions of the coarse mesh it was lifted from, which has
@@ -607,6 +621,9 @@ impl<'a> Trial<'a> {
         PlacedFill { meshes, stop, tried: result.tried, choice: (!choice.is_empty()).then_some(choice) }
     }
 }
+
+/// Positions that reach so much of the star bound are not looked for once more.
+const REACHED: f64 = 0.98;
 
 /// Stars that reach no more than this leave no room for a valid mesh.
 const NO_ROOM: f64 = 1e-6;

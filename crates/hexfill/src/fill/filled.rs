@@ -69,6 +69,8 @@ pub struct Filled {
     pub(crate) mesh: HexMesh,
     pub(crate) route: Route,
     pub(crate) start: Option<Vec<[f64; 3]>>,
+    /// Whether these are positions to begin with as they are, and no guess to be smoothed first.
+    pub(crate) is_placed: bool,
     /// Per hex.
     pub(crate) makers: Vec<Maker>,
     /// The smaller mesh that a shelling was lifted from.
@@ -79,20 +81,20 @@ impl Filled {
     /// A mesh without start positions, made in one step.
     pub(crate) fn by(route: Route, mesh: HexMesh) -> Self {
         let makers = vec![route.maker(); mesh.n_hexes()];
-        Self { mesh, route, start: None, makers, coarse: None }
+        Self { mesh, route, start: None, is_placed: false, makers, coarse: None }
     }
 
     /// This filling after one more step, which put hexes behind those there were.
     pub(crate) fn changed(&self, step: Maker, mesh: HexMesh) -> Self {
         let mut makers = self.makers.clone();
         makers.resize(mesh.n_hexes(), step);
-        Self { mesh, route: self.route, start: None, makers, coarse: None }
+        Self { mesh, route: self.route, start: None, is_placed: false, makers, coarse: None }
     }
 
     /// This filling after one more step; `origin` has for each hex the one that it was, or `None` for those of this step.
     pub(crate) fn remade(&self, step: Maker, mesh: HexMesh, origin: &[Option<u32>]) -> Self {
         let makers = origin.iter().map(|was| was.map_or(step, |h| self.makers[h as usize])).collect();
-        Self { mesh, route: self.route, start: None, makers, coarse: None }
+        Self { mesh, route: self.route, start: None, is_placed: false, makers, coarse: None }
     }
 
     /// The mesh; the surface's vertices keep their ids, interior vertices follow.

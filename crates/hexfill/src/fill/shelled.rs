@@ -43,6 +43,7 @@ pub(crate) fn shelled(
                 mesh: shelled.mesh,
                 route: Route::Shelling,
                 start: shelled.points,
+                is_placed: shelled.is_placed,
                 makers: shelled.stages.iter().flat_map(of_stage).collect(),
                 coarse: shelled.coarse,
             });
