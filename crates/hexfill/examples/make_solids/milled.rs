@@ -280,5 +280,5 @@ pub(crate) fn random(seed: u64) -> Solid {
         0 | 1 if kinds[number(square)] != Square::Plain => inner[number(square)][ring].clone(),
         _ => column[square[0]].clone(),
     };
-    plate.milled(|square| kinds[number(square)], range, if closed || seed % 2 == 0 { as_it_is } else { bent })
+    plate.milled(|square| kinds[number(square)], range, if closed || seed.is_multiple_of(2) { as_it_is } else { bent })
 }

@@ -7,12 +7,13 @@
 
 use crate::best::budget::Budget;
 use crate::best::choice::{Candidate, Choice, Outcome};
+use crate::best::consider::NO_ROOM;
 use crate::best::hopeless::{Hopeless, hopeless};
 use crate::best::leader::Leader;
 use crate::best::mend::mended;
 use crate::best::no_room::no_room;
 use crate::best::pillows::with_pillows;
-use crate::best::rank::{GOOD, rank, within};
+use crate::best::rank::{GOOD, within};
 use crate::best::{PlaceOptions, PlacedFill};
 use crate::fill::attempt::Attempt;
 use crate::fill::construct::construct;
@@ -25,15 +26,14 @@ use crate::fill::options::{Effort, FillOptions, Strategy};
 use crate::fill::search::{search, smallest_on_record};
 use crate::fill::shelled::shelled;
 use crate::fill::stored::stored_mesh;
+use crate::place::place_best;
 use crate::place::placed::Placed;
-use crate::place::{place_as_it_is, place_at, place_best};
 use crate::problem::Problem;
-use crate::simplify::carried_positions;
 use hexfill_embed::quick_star_bound;
 use hexfill_lay::lay;
-use hexfill_mesh::{Context, HexMesh, StopReason, VertexId, hex_isomorphism, surface_symmetry_order};
+use hexfill_mesh::{Context, HexMesh, StopReason, hex_isomorphism, surface_symmetry_order};
 use hexfill_search::MAX_QUADS;
-use hexfill_shell::{CutLayers, Layer, ShellOptions, SplitOptions, cut_boundary_layers, split_stars};
+use hexfill_shell::{CutLayers, ShellOptions, cut_boundary_layers};
 
 /// Surfaces of at most so many quads have many fillings in the atlas.
 const SMALLEST: usize = 24;
@@ -97,35 +97,35 @@ pub(crate) fn fill_best(
 }
 
 /// The best mesh so far and what was tried.
-struct Trial<'a> {
-    problem: &'a Problem,
-    options: &'a FillOptions,
-    boundary: &'a [[f64; 3]],
-    how: &'a PlaceOptions,
-    ctx: &'a Context<'a>,
+pub(super) struct Trial<'a> {
+    pub(super) problem: &'a Problem,
+    pub(super) options: &'a FillOptions,
+    pub(super) boundary: &'a [[f64; 3]],
+    pub(super) how: &'a PlaceOptions,
+    pub(super) ctx: &'a Context<'a>,
     /// For engines that may find nothing.
-    early: Context<'a>,
-    embed: &'a hexfill_embed::Options,
-    budget: Budget,
+    pub(super) early: Context<'a>,
+    pub(super) embed: &'a hexfill_embed::Options,
+    pub(super) budget: Budget,
     /// What the engines say; their meshes stay here until they are considered.
-    result: FillResult,
-    best: Option<Leader>,
+    pub(super) result: FillResult,
+    pub(super) best: Option<Leader>,
     /// The meshes considered.
-    seen: Vec<Candidate>,
+    pub(super) seen: Vec<Candidate>,
     /// The shelled mesh nearest to valid positions, while none has any: bad corners first, then hexes.
-    tangled: Option<Tangled>,
+    pub(super) tangled: Option<Tangled>,
     /// The laid meshes without valid positions.
-    nearly: Vec<Tangled>,
+    pub(super) nearly: Vec<Tangled>,
     /// Why no work is spent beyond the first trials, once that was asked.
-    hopeless: Option<Option<Hopeless>>,
+    pub(super) hopeless: Option<Option<Hopeless>>,
 }
 
 /// A mesh whose embedding failed.
-struct Tangled {
+pub(super) struct Tangled {
     /// Hexes with a corner that is not positive.
-    bad: usize,
-    filled: Filled,
-    points: Vec<[f64; 3]>,
+    pub(super) bad: usize,
+    pub(super) filled: Filled,
+    pub(super) points: Vec<[f64; 3]>,
 }
 
 impl<'a> Trial<'a> {
@@ -388,7 +388,7 @@ impl<'a> Trial<'a> {
     }
 
     /// Why the surface is not worth more than one trial of each mesh, asked where none is valid yet.
-    fn hopeless(&mut self) -> Option<Hopeless> {
+    pub(super) fn hopeless(&mut self) -> Option<Hopeless> {
         // Only where nothing is valid so far: a mesh in hand is better evidence than any forecast.
         if self.options.effort == Effort::Best || !matches!(self.class(), None | Some(2)) {
             return None;
@@ -399,7 +399,7 @@ impl<'a> Trial<'a> {
 
     /// Whether a mesh of this route that cannot be valid is worth a look: the first mesh of all, or, where none is valid, the first laid one, which is all but
     /// valid as it was laid.
-    fn is_first_of(&self, route: Route) -> bool {
+    pub(super) fn is_first_of(&self, route: Route) -> bool {
         let has_positions = |c: &Candidate| c.route == route && !matches!(c.outcome, Outcome::Bounded(_));
         match self.class() {
             None => true,
@@ -412,157 +412,17 @@ impl<'a> Trial<'a> {
         self.problem.surface.is_sphere() && self.problem.surface.n_quads() <= MAX_QUADS
     }
 
-    fn limited(&self) -> Context<'a> {
+    pub(super) fn limited(&self) -> Context<'a> {
         self.how.limit.map_or(*self.ctx, |limit| self.ctx.with_time_limit(limit))
     }
 
-    fn class(&self) -> Option<u8> {
+    pub(super) fn class(&self) -> Option<u8> {
         self.best.as_ref().map(|leader| leader.rank.0)
     }
 
     /// Whether no other engine need be asked.
     fn is_enough(&self) -> bool {
         self.class().zip(self.budget.enough).is_some_and(|(class, enough)| class <= enough)
-    }
-
-    /// Considers the meshes that an engine found.
-    fn consider_found(&mut self) -> Result<(), FillError> {
-        std::mem::take(&mut self.result.meshes).into_iter().try_for_each(|filled| self.consider(filled))
-    }
-
-    /// Embeds a mesh and keeps it if it is the best. The start positions of a shelling are a guess.
-    fn consider(&mut self, filled: Filled) -> Result<(), FillError> {
-        let is_guess = filled.route == Route::Shelling;
-        self.consider_from(filled, is_guess)
-    }
-
-    /// [`Self::consider`], where start positions are a guess, to be smoothed first, or what to begin with.
-    fn consider_from(&mut self, mut filled: Filled, is_guess: bool) -> Result<(), FillError> {
-        let prefer = self.options.prefer;
-        if self.options.layers.is_some() && filled.route != Route::Shelling {
-            // Layers are cut out of a pillow, which shelling puts by itself.
-            let pillow = SplitOptions::default().with_below(-1.0).with_layer(Layer::Always);
-            let Some(pillowed) = split_stars(&filled.mesh, self.boundary, &pillow, self.ctx) else { return Ok(()) };
-            verify(&self.problem.surface, &pillowed.mesh, filled.route)?;
-            filled = filled.changed(Maker::Pillows, pillowed.mesh);
-        }
-        let is_shelled = filled.route == Route::Shelling;
-        if is_shelled {
-            // Even at a worst scaled Jacobian of 1 it would have too many hexes to be kept; embedding is what costs,
-            // so it is not begun.
-            let perfect = (0, within(filled.mesh.n_hexes(), 1.0, prefer));
-            if self.best.as_ref().is_some_and(|leader| leader.rank <= perfect) {
-                return Ok(());
-            }
-        }
-        let mut bound = 1.0;
-        if is_shelled || matches!(filled.route, Route::Laying | Route::Construction) {
-            bound = quick_star_bound(&filled.mesh, self.boundary).unwrap_or(1.0);
-            if let Some(split) = self.split(&filled, bound)? {
-                self.consider(split)?;
-            }
-            // The bound is a theorem for this mesh: no positions of inner vertices beat it. Something must be
-            // returned, so the first one is kept all the same.
-            let reaches = (0, within(filled.mesh.n_hexes(), bound, prefer));
-            let is_beaten = is_shelled && self.best.as_ref().is_some_and(|leader| leader.rank <= reaches);
-            if is_beaten || bound <= NO_ROOM && !self.is_first_of(filled.route) {
-                self.seen.push(Candidate::new(&filled, Outcome::Bounded(bound)));
-                return Ok(());
-            }
-        }
-        let placed = if is_shelled || filled.route == Route::Laying {
-            // Its surface vertices lie where the surface's do, so there is one way to place it.
-            let one = self
-                .embed
-                .with_starts(self.embed.starts().max(1))
-                .with_programs(self.embed.programs().min(self.budget.screening))
-                .with_smooth_start(is_guess && !filled.is_placed);
-            let placed = place_as_it_is(&filled, self.boundary, Some(&one), &self.limited());
-            let placed = self.placed_from_guess(&filled, placed, &one, bound);
-            self.placed_from_coarse(&filled, placed, one)
-        } else {
-            let mut how = self.embed.with_programs(self.embed.programs().min(self.budget.others));
-            let is_late = self.best.is_some() || filled.route == Route::Construction;
-            if how.starts() == 0 && is_late && self.hopeless().is_some() {
-                how = how.with_starts(1);
-            }
-            let (turned, placed) = place_at(filled, self.problem, self.boundary, Some(&how), &self.limited());
-            filled = turned;
-            placed
-        };
-        if is_shelled && !placed.is_certified() {
-            let bad = placed.cells.iter().filter(|c| c.corner_scaled_jacobian <= 0.0).count();
-            let least = self.tangled.as_ref().map(|t| (t.bad, t.filled.mesh.n_hexes()));
-            if least.is_none_or(|least| (bad, filled.mesh.n_hexes()) < least) {
-                // Fewest bad corners first, as pillows mend corners; then fewest hexes, as each pillow brings more.
-                self.tangled = Some(Tangled { bad, filled: filled.clone(), points: placed.points.clone() });
-            }
-        }
-        if filled.route == Route::Laying && !placed.is_certified() {
-            let bad = placed.cells.iter().filter(|c| !c.valid).count();
-            self.nearly.push(Tangled { bad, filled: filled.clone(), points: placed.points.clone() });
-        }
-        let rank = rank(&filled, &placed, prefer, self.boundary.len());
-        let outcome = if placed.is_certified() { Outcome::Certified(placed.worst()) } else { Outcome::NotCertified };
-        self.seen.push(Candidate::new(&filled, outcome));
-        if self.best.as_ref().is_none_or(|leader| rank < leader.rank) {
-            self.best = Some(Leader { rank, filled, placed, is_polished: false });
-        }
-        Ok(())
-    }
-
-    /// A mesh that was placed from positions of its own, or placed once more as if these were a guess, if it is not as good as its star bound.
-    fn placed_from_guess(&self, filled: &Filled, placed: Placed, how: &hexfill_embed::Options, bound: f64) -> Placed {
-        if !filled.is_placed || placed.is_certified() && placed.worst() >= REACHED * bound || self.ctx.stop().is_some()
-        {
-            return placed;
-        }
-        let how = how.with_smooth_start(true);
-        let again = place_as_it_is(filled, self.boundary, Some(&how), &self.limited());
-        let rank = |placed| rank(filled, placed, self.options.prefer, self.boundary.len());
-        if rank(&again) < rank(&placed) { again } else { placed }
-    }
-
-    /// A mesh that was placed, or placed once more if it is not good: from the positions of the coarse mesh it was lifted from, which has
-    /// few hexes and is often valid where the fine one is not.
-    fn placed_from_coarse(&self, filled: &Filled, placed: Placed, how: hexfill_embed::Options) -> Placed {
-        let is_good = placed.is_certified() && placed.worst() >= GOOD;
-        let Some(coarse) = filled.coarse.as_ref().filter(|_| !is_good && self.ctx.stop().is_none()) else {
-            return placed;
-        };
-        let at = hexfill_embed::embed(coarse.mesh(), &coarse.boundary(), None, &how, &self.limited());
-        let Some(start) = at.ok().and_then(|at| coarse.lifted(&at.points)) else { return placed };
-        let from = Filled { start: Some(start), ..filled.clone() };
-        let how = how.with_smooth_start(false);
-        let again = place_as_it_is(&from, self.boundary, Some(&how), &self.limited());
-        // Never worse: the first placement stays where the second is not better.
-        let rank = |placed| rank(filled, placed, self.options.prefer, self.boundary.len());
-        if rank(&again) < rank(&placed) { again } else { placed }
-    }
-
-    /// The mesh with the stars split that leave (next to) no room; `None` if there are none, or none can be helped.
-    fn split(&self, filled: &Filled, bound: f64) -> Result<Option<Filled>, FillError> {
-        // Pillows are candidates of their own.
-        let options = SplitOptions::default().with_layer(Layer::Never);
-        if bound >= options.below() {
-            return Ok(None);
-        }
-        let Some(split) = split_stars(&filled.mesh, self.boundary, &options, self.ctx) else { return Ok(None) };
-        let after = quick_star_bound(&split.mesh, self.boundary).unwrap_or(1.0);
-        if split.splits.is_empty() || after <= bound {
-            return Ok(None);
-        }
-        verify(&self.problem.surface, &split.mesh, filled.route)?;
-        let mut made = filled.changed(Maker::SplitStars, split.mesh);
-        // These start from positions of their own.
-        let is_placed = matches!(filled.route, Route::Laying | Route::Construction);
-        let start = filled.start.as_ref().filter(|_| is_placed);
-        made.start = start.map(|points| {
-            let origin: Vec<Option<VertexId>> =
-                (0..made.mesh.n_vertices()).map(|v| (v < points.len()).then(|| VertexId::new(v))).collect();
-            carried_positions(&made.mesh, &origin, points)
-        });
-        Ok(Some(made))
     }
 
     /// Raises the best mesh further, if it was only screened.
@@ -621,9 +481,3 @@ impl<'a> Trial<'a> {
         PlacedFill { meshes, stop, tried: result.tried, choice: (!choice.is_empty()).then_some(choice) }
     }
 }
-
-/// Positions that reach so much of the star bound are not looked for once more.
-const REACHED: f64 = 0.98;
-
-/// Stars that reach no more than this leave no room for a valid mesh.
-const NO_ROOM: f64 = 1e-6;
