@@ -157,9 +157,8 @@ const RESIDUALS: usize = 4;
 const STIRRING: u32 = 20;
 /// Meshes that cost less give every edge what it wants.
 const PERFECT: f32 = 1e-3;
-/// Surfaces of more quads are not swept by flips without compression too, nor by layers.
+/// Surfaces of more quads are not swept by flips without compression too.
 const MOST_FINE: usize = 20_000;
-const MOST_FINE_LAYERS: usize = 10_000;
 
 /// Sweeps a surface inward. `points`: one position per vertex of the surface, outward orientation; without them every edge is
 /// taken for flat.
@@ -279,9 +278,6 @@ impl Keeper<'_> {
             return;
         }
         let is_compressed = self.coarse.surface.n_quads() < self.surface.n_quads();
-        if is_compressed && pillows == 0 && self.surface.genus() == 0 {
-            self.layer_fine(ctx);
-        }
         match self.points {
             Some(given) if self.surface.genus() > 0 => self.sweep_cut_open(given, pillows, ctx),
             _ if found == 0 && is_compressed => {
@@ -290,22 +286,6 @@ impl Keeper<'_> {
                 self.keep(self.fine, pillows, meshes, ctx);
             }
             _ => (),
-        }
-    }
-
-    /// Sweeps the surface as it is by layers and keeps what is closer to the hexes its edges want than anything of the compressed one. A chord that stands
-    /// for several may have to end in two places: on a shaft that steps in, the rings of the wide end go partly to the step and partly to the narrow end.
-    fn layer_fine(&mut self, ctx: &Context<'_>) {
-        let least = self.shelling.meshes.iter().map(|m| m.cost).fold(f32::INFINITY, f32::min);
-        if self.shelling.is_perfect() || self.surface.n_quads() > MOST_FINE_LAYERS {
-            return;
-        }
-        let layered = Start::new(self.fine, 0).by_layers(self.options, ctx).0;
-        let measured = layered.into_iter().filter_map(|m| deviation(self.fine, &m.hexes).map(|d| (d, m)));
-        let best = measured.min_by(|(a, _), (b, _)| a.cost.total_cmp(&b.cost).then(a.fine_hexes.cmp(&b.fine_hexes)));
-        if let Some((d, glued)) = best.filter(|(d, _)| d.cost < least) {
-            let lifted = self.lifted(self.fine, &glued, d.cost, 0, ctx);
-            self.shelling.meshes.extend(lifted);
         }
     }
 
@@ -613,12 +593,12 @@ mod tests {
     }
 
     #[test]
-    fn rings_that_end_in_two_places_are_swept_one_by_one() {
+    fn rings_that_end_in_two_places_are_columns() {
         for (rings, low, high) in [(2, 2, 4), (3, 1, 3)] {
             let (surface, points, known) = stepped_shaft(rings, low, high);
             let wanted = wanted_hexes(&surface, Some(&points));
             let coarse = compress(&surface, &wanted);
-            // The rings of the wide end are one chord of the compressed surface.
+            // The rings of the wide end are one chord of the compressed surface, which no mesh of that surface has.
             assert!(coarse.length.contains(&rings), "{:?}", coarse.length);
             let made = shell(&surface, Some(&points), &ShellOptions::default(), &Context::default());
             let best = made.meshes.iter().min_by(|a, b| a.cost.total_cmp(&b.cost)).unwrap();

@@ -186,11 +186,11 @@ impl<'a> Trial<'a> {
         let shell = self.budget.shell.clone();
         let shell = if self.is_laid_first() { shell.with_largest_residual(MOST_STIRRED) } else { shell };
         if self.options.layers.is_some() || self.budget.enough.is_none() {
-            return self.shell_by(shell);
+            return self.shell_by(shell).map(drop);
         }
         // Where the surface says what its columns are, sweeps have nothing better, and their embedding takes the time.
-        self.shell_by(shell.clone().with_pillows(Vec::new()))?;
-        if self.is_enough() { Ok(()) } else { self.shell_by(shell.with_direct(false)) }
+        let found = self.shell_by(shell.clone().with_pillows(Vec::new()))?;
+        if found && self.is_enough() { Ok(()) } else { self.shell_by(shell.with_direct(false)).map(drop) }
     }
 
     /// Whether hexes are laid before the large residual of a sweep is stirred.
@@ -207,10 +207,12 @@ impl<'a> Trial<'a> {
         self.is_laid_first() && self.result.tried.iter().any(is_large)
     }
 
-    /// Shells the surface with these options.
-    fn shell_by(&mut self, shell: ShellOptions) -> Result<(), FillError> {
+    /// Shells the surface with these options; whether that brought a mesh.
+    fn shell_by(&mut self, shell: ShellOptions) -> Result<bool, FillError> {
         let how = FillOptions { shell, ..self.options.clone() };
-        for filled in shelled(self.problem, &how, &self.early, &mut self.result)? {
+        let made = shelled(self.problem, &how, &self.early, &mut self.result)?;
+        let found = !made.is_empty();
+        for filled in made {
             if self.best.is_some()
                 && (self.ctx.stop().is_some() || self.options.effort == Effort::Fast && self.is_enough())
             {
@@ -218,7 +220,7 @@ impl<'a> Trial<'a> {
             }
             self.consider(filled)?;
         }
-        Ok(())
+        Ok(found)
     }
 
     /// Asks the other engines where no mesh is good yet. Says why none can be valid, if that is known.
