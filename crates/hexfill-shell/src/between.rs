@@ -12,6 +12,8 @@ use crate::front::{Front, NONE};
 use hexfill_geometry::{Vector, cone, dot, sub};
 use hexfill_mesh::{Dart, QuadSurface};
 
+/// More hexes than this are not made.
+const MOST_HEXES: usize = 4_000_000;
 /// Images of the first dart that are tried, the nearest ones.
 const MOST_IMAGES: usize = 400;
 
@@ -68,6 +70,9 @@ pub(crate) fn between(surface: &QuadSurface, points: &[[f64; 3]]) -> Option<Vec<
     let ratio = long / columns.len() as f64 / edge;
     // Many thin layers are nobody's wish: the count is bounded by that of a cube.
     let layers = if ratio.is_finite() { (ratio.round() as u32).clamp(1, surface.n_quads() as u32) } else { 1 };
+    if layers as usize * sides[0].len() > MOST_HEXES {
+        return None;
+    }
     let mut rank = vec![0; surface.n_vertices()];
     columns.iter().enumerate().for_each(|(i, &(v, _))| rank[v] = i as u32);
     let n = surface.n_vertices() as u32;

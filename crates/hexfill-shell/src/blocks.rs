@@ -16,8 +16,7 @@ use crate::front::{Front, NONE};
 use crate::polycube::polycube;
 use crate::section::columns;
 use hexfill_geometry::{Vector, cone, dot, sub};
-use hexfill_mesh::{Dart, QuadSurface};
-use std::collections::VecDeque;
+use hexfill_mesh::{Context, Dart, QuadSurface};
 
 /// Surfaces of more quads are not cut.
 const MOST_QUADS: usize = 10_000;
@@ -25,8 +24,13 @@ const MOST_QUADS: usize = 10_000;
 const MOST_BLOCKS: usize = 12;
 /// Loops that are looked at for each cut.
 const MOST_LOOPS: usize = 500;
-/// Vertices of other degree than four a loop may pass.
+/// Vertices a loop may pass where more than one way goes on, and the degree beyond which it passes none: tips have hundreds of ways.
 const MOST_IRREGULAR: usize = 3;
+const MOST_DEGREE: usize = 8;
+/// Edges that loops are followed along, in all, for each quad of a part.
+const STEPS: usize = 64;
+/// Quads of the parts that are tried, in all.
+const MOST_TRIED: usize = 1_000_000;
 /// An edge that wants fewer hexes than this cannot be parted.
 const PARTED: f32 = 1.5;
 /// An edge that wants more is concave.
@@ -42,15 +46,16 @@ type Quads = Vec<[u32; 4]>;
 type Hexes = Vec<[u32; 8]>;
 
 /// The hexes of a solid that is cut into blocks, vertices of the surface first; `None` if no cuts were found.
-pub(crate) fn blocks(surface: &QuadSurface, points: &[Vector]) -> Option<Hexes> {
+pub(crate) fn blocks(surface: &QuadSurface, points: &[Vector], ctx: &Context<'_>) -> Option<Hexes> {
     if surface.n_components() > 1 || surface.n_quads() > MOST_QUADS {
         return None;
     }
-    let mut solid = Solid { points: points.iter().copied().map(Some).collect(), hexes: Vec::new() };
+    let points = points.iter().copied().map(Some).collect();
+    let mut solid = Solid { points, hexes: Vec::new(), tried: 0 };
     let whole: Quads = surface.quads_raw();
     let mut rest = whole.clone();
     for _ in 1..MOST_BLOCKS {
-        let (block, other, is_last) = solid.cut_off(&rest)?;
+        let (block, other, is_last) = solid.cut_off(&rest, ctx)?;
         solid.fill(&block)?;
         if is_last {
             solid.fill(&other)?;
@@ -67,6 +72,8 @@ struct Solid {
     /// Per vertex: where it is, if it lies on the surface or a cut.
     points: Vec<Option<Vector>>,
     hexes: Hexes,
+    /// Quads of the parts that were tried.
+    tried: usize,
 }
 
 /// A part as a surface of its own.
@@ -118,31 +125,39 @@ impl Solid {
     }
 
     /// Cuts the largest block off: its quads, the others, and whether these are a block as well.
-    fn cut_off(&mut self, quads: &Quads) -> Option<(Quads, Quads, bool)> {
+    fn cut_off(&mut self, quads: &Quads, ctx: &Context<'_>) -> Option<(Quads, Quads, bool)> {
         let part = self.part(quads)?;
         let n_points = self.points.len();
-        let mut best: Option<(usize, Cut, bool, bool)> = None;
+        let mut best: Option<(usize, Cut, bool)> = None;
+        let mut is_last = false;
         for cut in part.cuts() {
-            let tried = self
-                .parted(&part, &cut)
-                .map(|sides| sides.map(|quads| (self.part(&quads).is_some_and(|p| p.filled().is_some()), quads.len())));
+            if ctx.stop().is_some() || self.tried > MOST_TRIED {
+                return None;
+            }
+            let sides = self.parted(&part, &cut);
+            let is_block = sides.map(|sides| {
+                let sizes = sides.each_ref().map(Vec::len);
+                self.tried += sizes[0] + sizes[1];
+                (sizes, sides.map(|quads| self.part(&quads).is_some_and(|p| p.filled().is_some())))
+            });
             // Only a trial: the cut is made again if it is taken.
             self.points.truncate(n_points);
-            best = match tried {
-                Some([(true, _), (true, _)]) => {
-                    best = Some((0, cut, false, true));
+            match is_block {
+                Some((_, [true, true])) => {
+                    (best, is_last) = (Some((0, cut, false)), true);
                     break;
                 }
                 // What is left is cut again, so the less the better.
-                Some([(true, _), (false, left)] | [(false, left), (true, _)])
-                    if best.as_ref().is_none_or(|(least, ..)| left < *least) =>
-                {
-                    Some((left, cut, tried.is_some_and(|[(first, _), _]| !first), false))
+                Some((sizes, [first, second])) if first != second => {
+                    let left = sizes[usize::from(first)];
+                    if best.as_ref().is_none_or(|(least, ..)| left < *least) {
+                        best = Some((left, cut, second));
+                    }
                 }
-                _ => best,
-            };
+                _ => (),
+            }
         }
-        let (_, cut, is_second, is_last) = best?;
+        let (_, cut, is_second) = best?;
         let [first, second] = self.parted(&part, &cut)?;
         Some(if is_second { (second, first, is_last) } else { (first, second, is_last) })
     }
@@ -228,9 +243,14 @@ impl Solid {
 impl Part {
     /// The hexes of a block.
     fn filled(&self) -> Option<Hexes> {
-        develop(&self.surface, &self.wanted, Some(&self.points))
-            .and_then(|d| polycube(&self.surface, &d))
-            .or_else(|| columns(&self.surface, &self.wanted, None).into_iter().next().map(|made| made.hexes))
+        develop(&self.surface, &self.wanted, Some(&self.points)).and_then(|d| polycube(&self.surface, &d)).or_else(
+            || {
+                columns(&self.surface, &self.wanted, None, &Context::default())
+                    .into_iter()
+                    .next()
+                    .map(|made| made.hexes)
+            },
+        )
     }
 
     /// Loops that have cuts, those through concave creases first.
@@ -241,14 +261,15 @@ impl Part {
         starts.sort_by_key(|&d| self.wanted[d as usize] < CONCAVE);
         let mut known = vec![false; 4 * self.surface.n_quads()];
         let mut cuts = Vec::new();
+        let mut steps = STEPS * self.surface.n_quads();
         for d in starts {
-            if cuts.len() >= MOST_LOOPS {
+            if cuts.len() >= MOST_LOOPS || steps == 0 {
                 break;
             }
             if known[d as usize] {
                 continue;
             }
-            for darts in self.loops(d) {
+            for darts in self.loops(d, &mut steps) {
                 for &d in &darts {
                     known[d as usize] = true;
                     known[self.surface.twin(Dart(d)).index()] = true;
@@ -259,36 +280,41 @@ impl Part {
         cuts
     }
 
-    /// The loops that run straight on from a dart, with all ways to pass vertices of other degree than four.
-    fn loops(&self, first: u32) -> Vec<Vec<u32>> {
+    /// The loops that run straight on from a dart, with all ways to pass vertices where several go on, in at most so many steps.
+    fn loops(&self, first: u32, steps: &mut usize) -> Vec<Vec<u32>> {
         let start = self.surface.origin(Dart(first));
         let most = self.surface.n_quads();
         let mut found = Vec::new();
-        let mut open: VecDeque<(Vec<u32>, usize)> = VecDeque::from([(vec![first], 0)]);
-        'paths: while let Some((mut path, mut irregular)) = open.pop_front() {
-            loop {
-                let last = *path.last().expect("a path has its first dart");
-                let ahead = self.straight(last);
-                if self.surface.target(Dart(last)) == start {
-                    if ahead.contains(&first) {
-                        found.push(path);
-                    }
-                    continue 'paths;
-                }
-                if path.len() > most || ahead.is_empty() {
-                    continue 'paths;
-                }
-                irregular += usize::from(ahead.len() > 1);
-                if irregular > MOST_IRREGULAR {
-                    continue 'paths;
-                }
-                for &d in &ahead[1..] {
-                    open.push_back((path.iter().copied().chain([d]).collect(), irregular));
-                }
+        let mut path = vec![first];
+        // Depth first: how long the path was, how many choices it had met, and where it goes on instead.
+        let mut others: Vec<(usize, usize, u32)> = Vec::new();
+        let mut choices = 0;
+        loop {
+            let last = *path.last().expect("a path has its first dart");
+            let ahead = self.straight(last);
+            let is_closed = self.surface.target(Dart(last)) == start;
+            if is_closed && ahead.contains(&first) {
+                found.push(path.clone());
+            }
+            *steps = steps.saturating_sub(1);
+            let is_choice = usize::from(ahead.len() > 1);
+            if !is_closed
+                && path.len() <= most
+                && !ahead.is_empty()
+                && choices + is_choice <= MOST_IRREGULAR
+                && *steps > 0
+            {
+                choices += is_choice;
+                others.extend(ahead[1..].iter().rev().map(|&d| (path.len(), choices, d)));
                 path.push(ahead[0]);
+            } else if let Some((length, met, d)) = others.pop().filter(|_| *steps > 0) {
+                path.truncate(length);
+                choices = met;
+                path.push(d);
+            } else {
+                return found;
             }
         }
-        found
     }
 
     /// The darts that go on from the target of `d` and can be parted, two edges or more away from it on both sides.
@@ -298,6 +324,9 @@ impl Part {
         while at != self.surface.twin(Dart(d)).0 {
             round.push(at);
             at = next(self.surface.twin(Dart(at)).0);
+        }
+        if round.len() >= MOST_DEGREE {
+            return Vec::new();
         }
         let inner = round.get(1..round.len().saturating_sub(1)).unwrap_or(&[]);
         let ahead: Vec<u32> = inner.iter().copied().filter(|&d| self.wanted[d as usize] >= PARTED).collect();
@@ -396,8 +425,11 @@ mod tests {
 
     fn check(parts: &[(bool, usize, Place<'_>)]) {
         let (surface, points, known) = welded(parts);
-        assert!(columns(&surface, &wanted_hexes(&surface, Some(&points)), None).is_empty(), "one cut at least");
-        let hexes = blocks(&surface, &points).expect("blocks");
+        assert!(
+            columns(&surface, &wanted_hexes(&surface, Some(&points)), None, &Context::default()).is_empty(),
+            "one cut at least"
+        );
+        let hexes = blocks(&surface, &points, &Context::default()).expect("blocks");
         let n_vertices = hexes.iter().flatten().max().unwrap() + 1;
         let swept = Swept { n_vertices, hexes, plugs: 0, front: Vec::new(), stopped: None };
         assert_eq!(judged(&surface, &swept), known);
@@ -436,8 +468,8 @@ mod tests {
     #[test]
     fn what_has_no_cuts_is_left_alone() {
         let (torus, points) = torus_at(12, 8);
-        assert!(blocks(&torus, &points).is_none());
+        assert!(blocks(&torus, &points, &Context::default()).is_none());
         let cube = hexfill_mesh::generate::cube_surface();
-        assert!(blocks(&cube, &[[0.0; 3]; 8]).is_none());
+        assert!(blocks(&cube, &[[0.0; 3]; 8], &Context::default()).is_none());
     }
 }

@@ -17,7 +17,7 @@ use crate::classes::Classes;
 use crate::dart::{next, opposite, prev, turn};
 use crate::front::Front;
 use hexfill_geometry::{Vector, add_scaled, cross, direction, dot, norm, scale, sub, unit};
-use hexfill_mesh::{Dart, QuadSurface};
+use hexfill_mesh::{Context, Dart, QuadSurface};
 use rustc_hash::FxHashMap;
 
 /// How labels go from quad to quad; all in right angles.
@@ -74,17 +74,23 @@ impl Columns {
     pub(crate) fn spread(&self, points: &[Vector]) -> Option<Vec<Vector>> {
         let mut column: Vec<u32> = (0..self.places.len() as u32).collect();
         column.sort_unstable_by_key(|&v| self.places[v as usize]);
+        // The next vertex of the surface further on, of any column.
+        let mut above = vec![None; column.len()];
+        let mut next = None;
+        for (i, &v) in column.iter().enumerate().rev() {
+            next = if (v as usize) < points.len() { Some(v) } else { next };
+            above[i] = next;
+        }
         let mut at: Vec<Option<Vector>> = points.iter().copied().map(Some).collect();
         at.resize(self.places.len(), None);
         let mut below: Option<u32> = None;
-        for (i, &v) in column.iter().enumerate() {
+        for (&v, above) in column.iter().zip(above) {
             let (section, z) = self.places[v as usize];
             if (v as usize) < points.len() {
                 below = Some(v);
                 continue;
             }
-            let above = column[i..].iter().find(|&&w| (w as usize) < points.len());
-            let ends = [below?, *above?];
+            let ends = [below?, above?];
             if ends.iter().any(|&w| self.places[w as usize].0 != section) {
                 return None;
             }
@@ -98,10 +104,15 @@ impl Columns {
 
 /// The hexes of every way to see the surface as a section with columns, vertices of the surface first. `wanted` is per dart; where creases do not tell
 /// caps from walls, `points` may.
-pub(crate) fn columns(surface: &QuadSurface, wanted: &[f32], points: Option<&[Vector]>) -> Vec<Columns> {
+pub(crate) fn columns(
+    surface: &QuadSurface,
+    wanted: &[f32],
+    points: Option<&[Vector]>,
+    ctx: &Context<'_>,
+) -> Vec<Columns> {
     // What an edge bends, more than flat if convex.
     let bend: Vec<f32> = wanted.iter().map(|w| FLAT - w).collect();
-    let mut by_rule = RULES.into_iter().map(|rule| columns_by(rule, surface, &bend));
+    let mut by_rule = RULES.into_iter().map(|rule| columns_by(rule, surface, &bend, ctx));
     if let Some(found) = by_rule.find(|found| !found.is_empty()) {
         return found;
     }
@@ -164,11 +175,14 @@ fn labels_along(surface: &QuadSurface, points: &[Vector], normals: &[Vector], ax
     (0..).zip(normals).map(label).collect()
 }
 
-fn columns_by(rule: Rule, surface: &QuadSurface, bend: &[f32]) -> Vec<Columns> {
-    let mut found = Vec::new();
+fn columns_by(rule: Rule, surface: &QuadSurface, bend: &[f32], ctx: &Context<'_>) -> Vec<Columns> {
+    let mut found: Vec<Columns> = Vec::new();
     // Two patches of one way are both its caps.
     let mut is_cap = vec![false; surface.n_quads()];
     for seed in patches(rule, surface, bend).into_iter().take(MOST_PATCHES) {
+        if ctx.stop().is_some() {
+            break;
+        }
         if is_cap[seed as usize] {
             continue;
         }
@@ -177,7 +191,9 @@ fn columns_by(rule: Rule, surface: &QuadSurface, bend: &[f32]) -> Vec<Columns> {
             .zip(&labels)
             .filter(|(_, l)| !matches!(l, Label::Wall(_)))
             .for_each(|(q, _): (usize, _)| is_cap[q] = true);
-        found.extend(hexes(surface, &labels));
+        // Solids of cubes are columns in three directions, with the same hexes.
+        let made = hexes(surface, &labels);
+        found.extend(made.filter(|made| found.iter().all(|other| other.hexes.len() != made.hexes.len())));
     }
     found
 }
@@ -413,7 +429,7 @@ mod tests {
 
     /// Judges all ways to fill a surface; the hexes of each.
     fn filled(surface: &QuadSurface, points: &[[f64; 3]]) -> Vec<usize> {
-        let found = columns(surface, &wanted_hexes(surface, Some(points)), Some(points));
+        let found = columns(surface, &wanted_hexes(surface, Some(points)), Some(points), &Context::default());
         let judge = |Columns { hexes, .. }: Columns| {
             let n_vertices = hexes.iter().flatten().max().unwrap() + 1;
             judged(surface, &Swept { n_vertices, hexes, plugs: 0, front: Vec::new(), stopped: None })
@@ -489,7 +505,7 @@ mod tests {
     #[test]
     fn what_is_inside_lies_evenly_between_caps() {
         let (surface, points) = voxel_points([3, 4, 5], |[x, y, z]| z < 3 || x == 0 || y > 0).unwrap();
-        let made = columns(&surface, &wanted_hexes(&surface, Some(&points)), Some(&points));
+        let made = columns(&surface, &wanted_hexes(&surface, Some(&points)), Some(&points), &Context::default());
         for columns in &made {
             let mut at = columns.spread(&points).unwrap();
             assert_eq!(at[..points.len()], points);
@@ -506,7 +522,10 @@ mod tests {
     #[test]
     fn a_torus_is_columns_along_its_axis() {
         let (torus, points) = torus_at(12, 16);
-        assert!(columns(&torus, &wanted_hexes(&torus, Some(&points)), None).is_empty(), "no edge bends enough");
+        assert!(
+            columns(&torus, &wanted_hexes(&torus, Some(&points)), None, &Context::default()).is_empty(),
+            "no edge bends enough"
+        );
         assert_eq!(filled(&torus, &points), [12 * 4 * 4]);
     }
 
@@ -536,12 +555,12 @@ mod tests {
     #[test]
     fn what_has_no_caps_has_no_columns() {
         let surface = hexfill_mesh::generate::random_sphere(60, 1).unwrap();
-        assert!(columns(&surface, &[2.0; 240], None).is_empty());
+        assert!(columns(&surface, &[2.0; 240], None, &Context::default()).is_empty());
         // With eight quads round the tube it has chamfers: one column of three hexes in each section, in four directions.
         let (torus, points) = torus_at(12, 8);
-        assert_eq!(filled(&torus, &points), [36; 4]);
+        assert_eq!(filled(&torus, &points), [36]);
         let cube = hexfill_mesh::generate::cube_surface();
-        assert!(columns(&cube, &[2.0; 24], None).is_empty());
-        assert_eq!(columns(&cube, &[1.0; 24], None).len(), 3);
+        assert!(columns(&cube, &[2.0; 24], None, &Context::default()).is_empty());
+        assert_eq!(columns(&cube, &[1.0; 24], None, &Context::default()).len(), 1);
     }
 }

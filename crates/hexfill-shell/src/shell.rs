@@ -31,7 +31,7 @@ use std::sync::Arc;
 /// |---|---|
 /// | restarts, seeds | 64, 4 |
 /// | pillows | 0 and 1 |
-/// | meshes that need no sweep | yes |
+/// | meshes that need no sweep, sweeps | yes |
 /// | candidates | 3 |
 /// | largest residual | any |
 #[derive(Clone, Debug)]
@@ -40,6 +40,7 @@ pub struct ShellOptions {
     seeds: u64,
     pillows: Vec<u32>,
     is_direct: bool,
+    is_swept: bool,
     candidates: usize,
     largest_residual: usize,
 }
@@ -51,6 +52,7 @@ impl Default for ShellOptions {
             seeds: 4,
             pillows: vec![0, 1],
             is_direct: true,
+            is_swept: true,
             candidates: 3,
             largest_residual: usize::MAX,
         }
@@ -70,7 +72,7 @@ impl ShellOptions {
         Self { seeds, ..self }
     }
 
-    /// Numbers of pillows to sweep with, one after the other; none: no sweep.
+    /// Numbers of pillows to try, one after the other.
     #[must_use]
     pub fn with_pillows(self, pillows: Vec<u32>) -> Self {
         Self { pillows, ..self }
@@ -80,6 +82,12 @@ impl ShellOptions {
     #[must_use]
     pub fn with_direct(self, is_direct: bool) -> Self {
         Self { is_direct, ..self }
+    }
+
+    /// Whether the surface is swept.
+    #[must_use]
+    pub fn with_sweeps(self, is_swept: bool) -> Self {
+        Self { is_swept, ..self }
     }
 
     /// Most meshes returned for each number of pillows.
@@ -104,9 +112,9 @@ impl ShellOptions {
         self.seeds
     }
 
-    /// Numbers of pillows to sweep with.
-    pub fn pillows(&self) -> &[u32] {
-        &self.pillows
+    /// Whether the surface is swept.
+    pub fn is_swept(&self) -> bool {
+        self.is_swept
     }
 
     /// Most meshes for each number of pillows.
@@ -157,7 +165,7 @@ const RESIDUALS: usize = 4;
 const STIRRING: u32 = 20;
 /// Meshes that cost less give every edge what it wants.
 const PERFECT: f32 = 1e-3;
-/// Surfaces of more quads are not swept by flips without compression too.
+/// Surfaces of more quads are not swept by flips without compression too, and get no pillow over what needs no sweep.
 const MOST_FINE: usize = 20_000;
 
 /// Sweeps a surface inward. `points`: one position per vertex of the surface, outward orientation; without them every edge is
@@ -201,7 +209,7 @@ pub fn shell(
         keeper.fill_directly(&wanted, ctx);
     }
     for &pillows in &options.pillows {
-        if keeper.shelling.is_perfect() || ctx.stop().is_some() {
+        if !options.is_swept || keeper.shelling.is_perfect() || ctx.stop().is_some() {
             break;
         }
         if surface.n_components() > 1 {
@@ -241,24 +249,24 @@ impl Keeper<'_> {
             return;
         }
         let cells = develop(surface, wanted, self.points).and_then(|d| polycube(surface, &d));
-        self.keep_direct(cells.map(|hexes| Glued::at_once(Stage::Grid, hexes)), ctx);
-        if self.shelling.is_perfect() {
-            return;
+        let mut upright: Vec<Glued> = cells.into_iter().map(|hexes| Glued::at_once(Stage::Grid, hexes)).collect();
+        if upright.is_empty() {
+            upright.extend(columns(surface, wanted, self.points, ctx).into_iter().map(|made| Glued {
+                start: self.points.and_then(|points| made.spread(points)),
+                ..Glued::at_once(Stage::Columns, made.hexes)
+            }));
         }
-        let upright = columns(surface, wanted, self.points).into_iter().map(|made| Glued {
-            start: self.points.and_then(|points| made.spread(points)),
-            ..Glued::at_once(Stage::Columns, made.hexes)
-        });
-        let mut upright: Vec<Glued> = upright.collect();
         if let Some(points) = self.points.filter(|_| upright.is_empty()) {
-            upright.extend(blocks(surface, points).map(|hexes| Glued::at_once(Stage::Columns, hexes)));
+            upright.extend(blocks(surface, points, ctx).map(|hexes| Glued::at_once(Stage::Columns, hexes)));
         }
         // What is rounded or leans finds its right angles behind a pillow.
-        let behind: Vec<Glued> = upright.iter().map(|made| pillowed_columns(surface, &made.hexes)).collect();
+        let is_fine = surface.n_quads() <= MOST_FINE && self.options.pillows.contains(&1);
+        let behind: Vec<Glued> = upright.iter().filter(|_| is_fine).map(|made| pillowed(surface, made)).collect();
         self.keep_direct(upright, ctx);
-        if !self.shelling.is_perfect() && self.options.pillows != [0] {
-            self.keep(self.fine, 1, behind, ctx);
+        if self.shelling.is_perfect() || ctx.stop().is_some() {
+            return;
         }
+        self.keep(self.fine, 1, behind, ctx);
         let given = self.points.filter(|_| surface.n_components() > 1 && surface.n_quads() <= MOST_FINE);
         let between = given.and_then(|points| between(surface, points));
         self.keep_direct(between.map(|hexes| Glued::at_once(Stage::Columns, hexes)), ctx);
@@ -396,17 +404,18 @@ fn is_valid(hexes: &[[u32; 8]], points: &[[f64; 3]]) -> bool {
     hexes.iter().all(|hex| (0..8).all(|k| corner(hex, k)))
 }
 
-/// Columns inside a copy of the surface, with a hex between each quad and its copy.
-fn pillowed_columns(surface: &QuadSurface, columns: &[[u32; 8]]) -> Glued {
+/// A mesh inside a copy of the surface, with a hex between each quad and its copy.
+fn pillowed(surface: &QuadSurface, made: &Glued) -> Glued {
     let n = surface.n_vertices() as u32;
-    let first = columns.iter().flatten().max().map_or(0, |v| v + 1).max(n);
+    let first = made.hexes.iter().flatten().max().map_or(0, |v| v + 1).max(n);
     let copy = |v: u32| if v < n { first + v } else { v };
     let pillow = surface.quads_raw().into_iter().map(|q: [u32; 4]| {
         let [a, b, c, d] = q;
         [copy(a), copy(b), copy(c), copy(d), a, b, c, d]
     });
-    let hexes: Hexes = pillow.chain(columns.iter().map(|h| h.map(copy))).collect();
-    Glued { stages: vec![(Stage::Pillows, surface.n_quads()), (Stage::Columns, hexes.len())], hexes, start: None }
+    let hexes: Hexes = pillow.chain(made.hexes.iter().map(|h| h.map(copy))).collect();
+    let behind = made.stages.iter().map(|&(stage, n)| (stage, surface.n_quads() + n));
+    Glued { stages: std::iter::once((Stage::Pillows, surface.n_quads())).chain(behind).collect(), hexes, start: None }
 }
 
 /// Where sweeps start: the surface, perhaps behind pillows and cut by plugs.

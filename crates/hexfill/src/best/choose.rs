@@ -189,7 +189,7 @@ impl<'a> Trial<'a> {
             return self.shell_by(shell).map(drop);
         }
         // Where the surface says what its columns are, sweeps have nothing better, and their embedding takes the time.
-        let found = self.shell_by(shell.clone().with_pillows(Vec::new()))?;
+        let found = self.shell_by(shell.clone().with_sweeps(false))?;
         if found && self.is_enough() { Ok(()) } else { self.shell_by(shell.with_direct(false)).map(drop) }
     }
 

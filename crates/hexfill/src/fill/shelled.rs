@@ -27,7 +27,7 @@ pub(crate) fn shelled(
     let made = shell(&problem.surface, points.as_deref(), &how, ctx);
     result.stop = ctx.stop().unwrap_or(result.stop);
     // Where nothing was swept and nothing found, nothing was tried.
-    if !how.pillows().is_empty() || !made.meshes.is_empty() {
+    if how.is_swept() || !made.meshes.is_empty() {
         let (coarse_quads, meshes, left) = (made.coarse_quads, made.meshes.len(), made.left);
         result.tried.push(Attempt::Shelling { coarse_quads, meshes, left });
     }
