@@ -2,8 +2,7 @@
 //!
 //! Idea: legs of a bracket, lugs, bores that cross: each block has a direction of its own, and where two of them meet a loop of edges runs straight round
 //! the solid, often through a concave crease. A loop with four corners and sides of equal lengths is the rim of a grid of quads (the *cut*), which closes both parts.
-//! Blocks are cut off, the largest first, until what is left is a block as well. (Users of
-//! sweeping tools do this by hand.)
+//! Blocks are cut off, the largest first, until what is left is a block as well. (Users of sweeping tools do this by hand.)
 //!
 //! Invariant: the quads of the surface stay; vertices inside a cut are new, and both its blocks have them.
 //!

@@ -129,7 +129,8 @@ impl Front {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shell::{ShellOptions, shell};
+    use crate::shell::shell;
+    use crate::shell_options::ShellOptions;
     use crate::sweep::Swept;
     use crate::test_surfaces::{judged, voxel_points};
     use hexfill_mesh::Context;

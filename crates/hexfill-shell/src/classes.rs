@@ -12,6 +12,17 @@ impl Classes {
         Self((0..n as u32).collect())
     }
 
+    /// One thing more, alone; its number.
+    pub(crate) fn add(&mut self) -> u32 {
+        self.0.push(self.0.len() as u32);
+        self.0.len() as u32 - 1
+    }
+
+    /// How many things there are.
+    pub(crate) fn len(&self) -> usize {
+        self.0.len()
+    }
+
     /// The least of the class of `i`.
     pub(crate) fn root(&mut self, mut i: u32) -> u32 {
         while self.0[i as usize] != i {

@@ -151,10 +151,11 @@ impl Development {
         }
         // A cyclic change of axes is a rotation: outward stays outward.
         let turned = |x: Site| [1, 2, 3].map(|k| x[(axis + k) % 3]);
-        self.at.iter_mut().for_each(|x| *x = turned(*x));
-        self.at.iter_mut().for_each(|x| x[2] = x[2].rem_euclid(period));
-        self.normal.iter_mut().for_each(|x| *x = turned(*x));
         self.period = period;
+        for v in 0..self.at.len() {
+            self.at[v] = self.rolled(turned(self.at[v]));
+        }
+        self.normal.iter_mut().for_each(|x| *x = turned(*x));
         Some(())
     }
 

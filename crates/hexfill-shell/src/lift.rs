@@ -7,6 +7,7 @@
 //! Source: ours; that sheets end in chords is Thurston 1993, Mitchell 1996.
 
 use crate::blend::{blend_block, springs};
+use crate::classes::Classes;
 use crate::compress::Coarse;
 use hexfill_mesh::cube::{EDGES, FACETS, POSITIONS};
 use hexfill_mesh::{Context, HexMesh};
@@ -134,34 +135,19 @@ pub(crate) struct ParallelClasses {
 /// The classes of a mesh, numbered by their first edge in the order of the hexes.
 pub(crate) fn parallel_classes(hexes: &[[u32; 8]]) -> ParallelClasses {
     let mut of: FxHashMap<[u32; 2], u32> = FxHashMap::default();
-    let mut parent: Vec<u32> = Vec::new();
-    fn root(parent: &mut [u32], mut i: u32) -> u32 {
-        while parent[i as usize] != i {
-            parent[i as usize] = parent[parent[i as usize] as usize];
-            i = parent[i as usize];
-        }
-        i
-    }
+    let mut classes = Classes::new(0);
     for hex in hexes {
         // The edges come four to an axis.
         for axis in EDGES.chunks(4) {
             let mut first = None;
             for &[i, j] in axis {
-                let id = *of.entry(pair(hex[i], hex[j])).or_insert_with(|| {
-                    parent.push(parent.len() as u32);
-                    parent.len() as u32 - 1
-                });
-                let r = root(&mut parent, id);
-                let f = root(&mut parent, *first.get_or_insert(r));
-                parent[r.max(f) as usize] = r.min(f);
+                let id = *of.entry(pair(hex[i], hex[j])).or_insert_with(|| classes.add());
+                classes.join(id, *first.get_or_insert(id));
             }
         }
     }
-    let n = parent.len();
-    for class in of.values_mut() {
-        *class = root(&mut parent, *class);
-    }
-    ParallelClasses { of, n }
+    of.values_mut().for_each(|class| *class = classes.root(*class));
+    ParallelClasses { of, n: classes.len() }
 }
 
 /// Per edge of the coarse mesh (smaller vertex first): into how many it is cut.

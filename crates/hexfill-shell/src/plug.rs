@@ -11,6 +11,7 @@
 //!
 //! Source: ours.
 
+use crate::classes::Classes;
 use crate::dart::{next, opposite, prev};
 use crate::front::{Front, NONE};
 use crate::inside::{centroid_is_inside, fan_is_inside};
@@ -152,25 +153,17 @@ impl Strands {
         let (of_quad, of_side) = cut.chords();
         let n_inner = of_quad.iter().flatten().max().map_or(0, |&m| m as u32 + 1);
         // Strands, then the chords of the one copy and of the other.
-        let mut parent: Vec<u32> = (0..self.n + 2 * n_inner).collect();
-        fn root(parent: &mut [u32], mut i: u32) -> u32 {
-            while parent[i as usize] != i {
-                parent[i as usize] = parent[parent[i as usize] as usize];
-                i = parent[i as usize];
-            }
-            i
-        }
+        let mut classes = Classes::new((self.n + 2 * n_inner) as usize);
         for (i, strands) in self.at_ring.iter().enumerate() {
             for (side, &strand) in strands.iter().enumerate() {
                 let chord = self.n + side as u32 * n_inner + of_side[i] as u32;
-                let (a, b) = (root(&mut parent, strand), root(&mut parent, chord));
-                parent[a.max(b) as usize] = a.min(b);
+                classes.join(strand, chord);
             }
         }
         let outside = self.crossings.iter().map(|&(pair, n)| (pair, n));
         let shift = [self.n, self.n + n_inner];
         let inside = shift.into_iter().flat_map(|s| of_quad.iter().map(move |p| (p.map(|c| s + c as u32), 1)));
-        outside.chain(inside).filter(|(p, _)| root(&mut parent, p[0]) == root(&mut parent, p[1])).map(|(_, n)| n).sum()
+        outside.chain(inside).filter(|(p, _)| classes.root(p[0]) == classes.root(p[1])).map(|(_, n)| n).sum()
     }
 }
 

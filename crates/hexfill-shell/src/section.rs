@@ -5,7 +5,8 @@
 //! are one quad of the *section*. Taking that for all edges at once folds the surface onto the section, also where only a flat side shows its inner quads
 //! (words are folded onto graphs so). Over each quad of the section the caps must be, from low to high, down, up, down, up: the columns are between.
 //!
-//! Round holes, curved walls and caps are no matter, as angles within a section are not looked at; chamfers and countersinks are levels of their walls. Where edges are rounded, caps are what faces an axis.
+//! Round holes, curved walls and caps are no matter, as angles within a section are not looked at; chamfers and countersinks are levels of their walls.
+//! Where edges are rounded, caps are what faces an axis.
 //!
 //! Invariant: a corner of a hex is told by its vertex of the section and its height; a surface with two vertices at one such place is refused.
 //!
@@ -58,6 +59,12 @@ enum Label {
     FacesDown,
     /// The dart that leads up.
     Wall(u32),
+}
+
+impl Label {
+    fn is_wall(self) -> bool {
+        matches!(self, Self::Wall(_))
+    }
 }
 
 /// Columns over a section.
@@ -187,10 +194,7 @@ fn columns_by(rule: Rule, surface: &QuadSurface, bend: &[f32], ctx: &Context<'_>
             continue;
         }
         let Some(labels) = labels(rule, surface, bend, seed) else { continue };
-        (0..)
-            .zip(&labels)
-            .filter(|(_, l)| !matches!(l, Label::Wall(_)))
-            .for_each(|(q, _): (usize, _)| is_cap[q] = true);
+        is_cap.iter_mut().zip(&labels).for_each(|(is_cap, label)| *is_cap |= !label.is_wall());
         // Solids of cubes are columns in three directions, with the same hexes.
         let made = hexes(surface, &labels);
         found.extend(made.filter(|made| found.iter().all(|other| other.hexes.len() != made.hexes.len())));
@@ -247,23 +251,20 @@ fn beyond(rule: Rule, label: Label, lean: f32, d: u32, t: u32, bend: f32) -> (La
         Label::Wall(up) => {
             let is_top = d == next(up);
             let turned = if is_top { lean + bend } else { lean - bend };
-            match (turned, is_top) {
-                (x, _) if x > rule.wall => (Label::FacesUp, 0.0),
-                (x, _) if x < -rule.wall => (Label::FacesDown, 0.0),
-                (x, true) => (Label::Wall(next(t)), if bend.abs() > rule.least { x } else { lean }),
-                (x, false) => (Label::Wall(prev(t)), if bend.abs() > rule.least { x } else { lean }),
+            let lean = if bend.abs() > rule.least { turned } else { lean };
+            match turned {
+                x if x > rule.wall => (Label::FacesUp, 0.0),
+                x if x < -rule.wall => (Label::FacesDown, 0.0),
+                _ => (Label::Wall(if is_top { next(t) } else { prev(t) }), lean),
             }
         }
         _ if bend.abs() < rule.cap => (label, 0.0),
         // A wall goes down from a convex edge of what faces up, and rises from a concave one. What is missing to a right angle is its lean.
         _ => {
             let missing = if bend.abs() > rule.least { 1.0 - bend.abs() } else { 0.0 };
-            match (label == Label::FacesUp, bend > 0.0) {
-                (true, true) => (Label::Wall(prev(t)), missing),
-                (true, false) => (Label::Wall(next(t)), missing),
-                (false, true) => (Label::Wall(next(t)), -missing),
-                (false, false) => (Label::Wall(prev(t)), -missing),
-            }
+            let faces_up = label == Label::FacesUp;
+            let goes_down = faces_up == (bend > 0.0);
+            (Label::Wall(if goes_down { prev(t) } else { next(t) }), if faces_up { missing } else { -missing })
         }
     }
 }
@@ -324,7 +325,7 @@ impl<'a> Section<'a> {
             left: vec![None; 4 * n],
         };
         for (q, label) in (0..n as u32).zip(labels) {
-            if !matches!(label, Label::Wall(_)) {
+            if !label.is_wall() {
                 for i in 0..4 {
                     let side = section.side(q, i) as usize;
                     section.left[side] = Some((q, i));
@@ -386,7 +387,7 @@ fn hexes(surface: &QuadSurface, labels: &[Label]) -> Option<Columns> {
     }
     // By quad of the section, low to high.
     let mut caps: Vec<(u32, i32, u32)> = Vec::new();
-    for q in (0..surface.n_quads() as u32).filter(|&q| !matches!(labels[q as usize], Label::Wall(_))) {
+    for q in (0..surface.n_quads() as u32).filter(|&q| !labels[q as usize].is_wall()) {
         caps.push((section.quad.root(q), height[surface.quads()[q as usize][0].index()], q));
     }
     caps.sort_unstable();

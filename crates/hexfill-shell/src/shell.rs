@@ -12,6 +12,7 @@ use crate::front::Front;
 use crate::lift::{CoarseMesh, lift};
 use crate::polycube::polycube;
 use crate::section::columns;
+use crate::shell_options::ShellOptions;
 use crate::solve::{Sweep, solve};
 use crate::stage::Stage;
 use crate::stir::stir_front;
@@ -19,109 +20,11 @@ use crate::sweep::sweep_front;
 use crate::sweep_options::SweepOptions;
 use crate::void::Void;
 use hexfill_geometry::{det, sub};
-use hexfill_mesh::cube::{POSITIONS, corner_at};
+use hexfill_mesh::cube::CORNER_NEIGHBOURS;
 use hexfill_mesh::{Context, HexMesh, QuadSurface};
 use hexfill_search::Atlas;
 use rayon::prelude::*;
 use std::sync::Arc;
-
-/// What to try.
-///
-/// | option | default |
-/// |---|---|
-/// | restarts, seeds | 64, 4 |
-/// | pillows | 0 and 1 |
-/// | meshes that need no sweep, sweeps | yes |
-/// | candidates | 3 |
-/// | largest residual | any |
-#[derive(Clone, Debug)]
-pub struct ShellOptions {
-    restarts: u64,
-    seeds: u64,
-    pillows: Vec<u32>,
-    is_direct: bool,
-    is_swept: bool,
-    candidates: usize,
-    largest_residual: usize,
-}
-
-impl Default for ShellOptions {
-    fn default() -> Self {
-        Self {
-            restarts: 64,
-            seeds: 4,
-            pillows: vec![0, 1],
-            is_direct: true,
-            is_swept: true,
-            candidates: 3,
-            largest_residual: usize::MAX,
-        }
-    }
-}
-
-impl ShellOptions {
-    /// Restarts of the solver by layers, for each number of pillows.
-    #[must_use]
-    pub fn with_restarts(self, restarts: u64) -> Self {
-        Self { restarts, ..self }
-    }
-
-    /// Seeds of the sweep by flips, for each number of pillows.
-    #[must_use]
-    pub fn with_seeds(self, seeds: u64) -> Self {
-        Self { seeds, ..self }
-    }
-
-    /// Numbers of pillows to try, one after the other.
-    #[must_use]
-    pub fn with_pillows(self, pillows: Vec<u32>) -> Self {
-        Self { pillows, ..self }
-    }
-
-    /// Whether the grid, sections and columns between components, which need no sweep, are asked first.
-    #[must_use]
-    pub fn with_direct(self, is_direct: bool) -> Self {
-        Self { is_direct, ..self }
-    }
-
-    /// Whether the surface is swept.
-    #[must_use]
-    pub fn with_sweeps(self, is_swept: bool) -> Self {
-        Self { is_swept, ..self }
-    }
-
-    /// Most meshes returned for each number of pillows.
-    #[must_use]
-    pub fn with_candidates(self, candidates: usize) -> Self {
-        Self { candidates, ..self }
-    }
-
-    /// Most quads of a residual that is filled; where every sweep leaves more there is no mesh, and none is waited for.
-    #[must_use]
-    pub fn with_largest_residual(self, largest_residual: usize) -> Self {
-        Self { largest_residual, ..self }
-    }
-
-    /// Restarts of the solver by layers.
-    pub fn restarts(&self) -> u64 {
-        self.restarts
-    }
-
-    /// Seeds of the sweep by flips.
-    pub fn seeds(&self) -> u64 {
-        self.seeds
-    }
-
-    /// Whether the surface is swept.
-    pub fn is_swept(&self) -> bool {
-        self.is_swept
-    }
-
-    /// Most meshes for each number of pillows.
-    pub fn candidates(&self) -> usize {
-        self.candidates
-    }
-}
 
 /// A complete mesh.
 #[derive(Clone, Debug)]
@@ -223,7 +126,7 @@ pub fn shell(
 
 impl Shelling {
     /// Whether a mesh gives every edge the hexes its angle wants: nothing is better then.
-    pub fn is_perfect(&self) -> bool {
+    fn is_perfect(&self) -> bool {
         self.meshes.iter().any(|m| m.cost < PERFECT)
     }
 }
@@ -392,16 +295,13 @@ impl Glued {
 
 /// Whether the determinant is positive at every corner.
 fn is_valid(hexes: &[[u32; 8]], points: &[[f64; 3]]) -> bool {
-    let corner = |hex: &[u32; 8], k: usize| {
-        let [x, y, z] = [0, 1, 2].map(|axis| {
-            let mut p = POSITIONS[k];
-            p[axis] ^= 1;
-            let [from, to] = [k, corner_at(p[0], p[1], p[2])].map(|i| points[hex[i] as usize]);
-            if p[axis] == 1 { sub(to, from) } else { sub(from, to) }
-        });
-        det(x, y, z) > 0.0
-    };
-    hexes.iter().all(|hex| (0..8).all(|k| corner(hex, k)))
+    hexes.iter().all(|hex| {
+        let at = hex.map(|v| points[v as usize]);
+        (0..8).all(|k| {
+            let [x, y, z] = CORNER_NEIGHBOURS[k].map(|i| sub(at[i], at[k]));
+            det(x, y, z) > 0.0
+        })
+    })
 }
 
 /// A mesh inside a copy of the surface, with a hex between each quad and its copy.

@@ -13,7 +13,6 @@ use crate::best::leader::Leader;
 use crate::best::mend::mended;
 use crate::best::no_room::no_room;
 use crate::best::pillows::with_pillows;
-use crate::best::rank::{GOOD, within};
 use crate::best::{PlaceOptions, PlacedFill};
 use crate::fill::attempt::Attempt;
 use crate::fill::construct::construct;
@@ -161,14 +160,12 @@ impl<'a> Trial<'a> {
         // On a surface with symmetries the mesh may lie another way, which has another bound.
         let has_one_way = surface_symmetry_order(surface) == 1;
         if has_one_way
-            && let Some(leader) = &self.best
+            && self.best.is_some()
             && let Ok(bound) = quick_star_bound(&filled.mesh, self.boundary)
+            && (bound <= NO_ROOM || self.is_beaten(&filled, bound))
         {
-            let reaches = (u8::from(bound < GOOD), within(filled.mesh.n_hexes(), bound, self.options.prefer));
-            if bound <= NO_ROOM || leader.rank <= reaches {
-                self.seen.push(Candidate::new(&filled, Outcome::Bounded(bound)));
-                return Ok(());
-            }
+            self.seen.push(Candidate::new(&filled, Outcome::Bounded(bound)));
+            return Ok(());
         }
         self.consider(filled)
     }

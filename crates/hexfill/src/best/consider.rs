@@ -48,8 +48,7 @@ impl Trial<'_> {
         if is_shelled {
             // Even at a worst scaled Jacobian of 1 it would have too many hexes to be kept; embedding is what costs,
             // so it is not begun.
-            let perfect = (0, within(filled.mesh.n_hexes(), 1.0, prefer));
-            if self.best.as_ref().is_some_and(|leader| leader.rank <= perfect) {
+            if self.is_beaten(&filled, 1.0) {
                 return Ok(());
             }
         }
@@ -61,8 +60,7 @@ impl Trial<'_> {
             }
             // The bound is a theorem for this mesh: no positions of inner vertices beat it. Something must be
             // returned, so the first one is kept all the same.
-            let reaches = (0, within(filled.mesh.n_hexes(), bound, prefer));
-            let is_beaten = is_shelled && self.best.as_ref().is_some_and(|leader| leader.rank <= reaches);
+            let is_beaten = is_shelled && self.is_beaten(&filled, bound);
             if is_beaten || bound <= NO_ROOM && !self.is_first_of(filled.route) {
                 self.seen.push(Candidate::new(&filled, Outcome::Bounded(bound)));
                 return Ok(());
@@ -109,6 +107,18 @@ impl Trial<'_> {
         Ok(())
     }
 
+    /// Whether a mesh whose worst scaled Jacobian is at most `bound` comes behind the best so far.
+    pub(super) fn is_beaten(&self, filled: &Filled, bound: f64) -> bool {
+        let reaches = (u8::from(bound < GOOD), within(filled.mesh.n_hexes(), bound, self.options.prefer));
+        self.best.as_ref().is_some_and(|leader| leader.rank <= reaches)
+    }
+
+    /// The better of two placements of a mesh; the first if they are as good.
+    fn better(&self, filled: &Filled, first: Placed, second: Placed) -> Placed {
+        let rank = |placed| rank(filled, placed, self.options.prefer, self.boundary.len());
+        if rank(&second) < rank(&first) { second } else { first }
+    }
+
     /// A mesh that was placed from positions of its own, or placed once more as if these were a guess, if it is not as good as its star bound.
     fn placed_from_guess(&self, filled: &Filled, placed: Placed, how: &hexfill_embed::Options, bound: f64) -> Placed {
         if !filled.is_placed || placed.is_certified() && placed.worst() >= REACHED * bound || self.ctx.stop().is_some()
@@ -116,9 +126,7 @@ impl Trial<'_> {
             return placed;
         }
         let how = how.with_smooth_start(true);
-        let again = place_as_it_is(filled, self.boundary, Some(&how), &self.limited());
-        let rank = |placed| rank(filled, placed, self.options.prefer, self.boundary.len());
-        if rank(&again) < rank(&placed) { again } else { placed }
+        self.better(filled, placed, place_as_it_is(filled, self.boundary, Some(&how), &self.limited()))
     }
 
     /// A mesh that was placed, or placed once more if it is not good: from the positions of the coarse mesh it was lifted from, which has
@@ -132,10 +140,7 @@ impl Trial<'_> {
         let Some(start) = at.ok().and_then(|at| coarse.lifted(&at.points)) else { return placed };
         let from = Filled { start: Some(start), ..filled.clone() };
         let how = how.with_smooth_start(false);
-        let again = place_as_it_is(&from, self.boundary, Some(&how), &self.limited());
-        // Never worse: the first placement stays where the second is not better.
-        let rank = |placed| rank(filled, placed, self.options.prefer, self.boundary.len());
-        if rank(&again) < rank(&placed) { again } else { placed }
+        self.better(filled, placed, place_as_it_is(&from, self.boundary, Some(&how), &self.limited()))
     }
 
     /// The mesh with the stars split that leave (next to) no room; `None` if there are none, or none can be helped.
