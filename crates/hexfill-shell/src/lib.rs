@@ -13,6 +13,7 @@
 //! | a second inner edge at vertices that no single one can serve | [`split_stars`] |
 //! | one sheet more round some hexes | [`pillow()`] |
 //! | thin layers under the surface | [`cut_boundary_layers`] |
+//! | fewer hexes where the surface is far | [`Coarsening`] |
 //!
 //! Not a guarantee: a surface whose chords cross themselves may be left with a void ([`Shelling::left`]); `hexfill-construct` fills every surface that can
 //! be filled, with more hexes. What is returned is complete, but it is for `hexfill-check` to judge.
@@ -30,6 +31,7 @@ mod bridge;
 mod cells;
 mod classes;
 mod close;
+mod coarsen;
 mod compress;
 mod dart;
 mod develop;
@@ -50,6 +52,7 @@ mod shell;
 mod shell_options;
 mod solve;
 mod split_star;
+mod stacks;
 mod stage;
 mod stir;
 mod sweep;
@@ -64,6 +67,7 @@ mod sweep_tests;
 mod test_surfaces;
 
 pub use boundary_layers::{BoundaryLayers, CutLayers, cut_boundary_layers};
+pub use coarsen::{Coarsened, Coarsening};
 pub use front::{Front, FrontError, Mark};
 pub use lift::CoarseMesh;
 pub use pillow::{Pillowed, pillow};

@@ -1,6 +1,6 @@
 //! Shelling from the surface to certified coordinates: what users of real surfaces get.
 
-use hexfill::{Attempt, BoundaryLayers, Context, FillOptions, PlaceOptions, Problem, Route, Strategy, fill_placed};
+use hexfill::{Attempt, BoundaryLayers, Context, FillOptions, PlaceOptions, Prefer, Problem, Route, Strategy, fill_placed};
 
 /// The boundary of filled cells with its positions.
 fn voxels(size: [usize; 3], filled: impl Fn([usize; 3]) -> bool) -> Problem {
@@ -54,6 +54,34 @@ fn real_surfaces_get_a_few_good_hexes_a_quad_for_any_number_of_threads() {
         }
         assert!(meshes[0] == meshes[1], "{name}: the number of threads changes the mesh");
     }
+}
+
+/// The surface of `n`^3 cubes, each point pushed to the unit sphere by the tangents of equal angles.
+fn ball(n: usize) -> Problem {
+    let (surface, points) = hexfill_mesh::generate::voxels([n; 3], |_| true).unwrap();
+    let round = |p: [i32; 3]| {
+        let q = p.map(|x| (std::f64::consts::FRAC_PI_2 * (f64::from(x) / n as f64 - 0.5)).tan());
+        let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();
+        q.map(|x| x / length)
+    };
+    Problem::new("ball", surface, points.into_iter().map(round).collect()).unwrap()
+}
+
+#[test]
+fn large_balls_are_coarser_inside() {
+    let problem = ball(16);
+    let quads = problem.surface().n_quads();
+    let (hexes, worst, _) = filled(&problem, &FillOptions::default());
+    assert!(hexes <= 2 * quads && worst >= 0.6, "{hexes} hexes, {worst}");
+    // Nothing is lost: who wants the best angles gets all the sheets.
+    let best = FillOptions::default().with_prefer(Prefer::Quality);
+    let (hexes, worst, _) = filled(&problem, &best);
+    assert_eq!(hexes, 16 * 16 * 16 + quads);
+    assert!(worst >= 0.75, "{worst}");
+    // Boxes are coarser only for those who want that.
+    let fewest = FillOptions::default().with_prefer(Prefer::Hexes);
+    let (hexes, worst, _) = filled(&voxels([12, 12, 12], |_| true), &fewest);
+    assert!(hexes < 1200 && worst >= 0.5, "{hexes} hexes, {worst}");
 }
 
 #[test]

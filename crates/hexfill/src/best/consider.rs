@@ -48,6 +48,7 @@ impl Trial<'_> {
         if is_shelled {
             // Even at a worst scaled Jacobian of 1 it would have too many hexes to be kept; embedding is what costs,
             // so it is not begun.
+            self.consider_coarser(&filled)?;
             if self.is_beaten(&filled, 1.0) {
                 return Ok(());
             }

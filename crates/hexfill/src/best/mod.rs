@@ -9,6 +9,7 @@
 mod budget;
 pub(crate) mod choice;
 mod choose;
+mod coarsen;
 mod consider;
 pub(crate) mod estimate;
 mod hopeless;

@@ -69,6 +69,15 @@ pub enum Attempt {
         /// Whether it has some then.
         found: bool,
     },
+    /// Three sheets made one inside the best mesh.
+    Coarsening {
+        /// Hexes before.
+        before: usize,
+        /// Hexes after.
+        after: usize,
+        /// Whether that is better.
+        found: bool,
+    },
     /// The construction.
     Construction(Box<Report>),
     /// A construction that the context stopped.
@@ -112,6 +121,9 @@ impl fmt::Display for Attempt {
             Self::Mending { found: false } => write!(f, "pillows round the last hexes that were not valid, in vain"),
             Self::Pillows { found: true } => write!(f, "pillows between stages of the shelling"),
             Self::Pillows { found: false } => write!(f, "pillows between stages of the shelling, in vain"),
+            Self::Coarsening { before, after, found } => {
+                write!(f, "coarsening from {before} to {after} hexes{}", if *found { "" } else { ", in vain" })
+            }
             Self::Construction(report) => report.fmt(f),
             Self::ConstructionStopped => write!(f, "construction, stopped before the mesh was complete"),
             Self::NoConstruction(why) => write!(f, "no construction: {why}"),

@@ -51,11 +51,13 @@ pub enum Maker {
     BoundaryLayers = 17,
     /// Laid at valid positions, one by one.
     Laying = 18,
+    /// Between three sheets and the one that goes on inside.
+    Coarsening = 19,
 }
 
 impl Maker {
     /// All, each at its number.
-    pub const ALL: [Self; 19] = [
+    pub const ALL: [Self; 20] = [
         Self::Given,
         Self::Catalogue,
         Self::InwardFlips,
@@ -75,6 +77,7 @@ impl Maker {
         Self::PillowsBetween,
         Self::BoundaryLayers,
         Self::Laying,
+        Self::Coarsening,
     ];
 
     /// Its number in the cell field `engine`.
@@ -104,6 +107,7 @@ impl Maker {
             Self::PillowsBetween => "pillows between",
             Self::BoundaryLayers => "boundary layers",
             Self::Laying => "laying",
+            Self::Coarsening => "coarsening",
         }
     }
 
