@@ -14,6 +14,37 @@ fn constructed(dir: &Path, out: &str) -> u64 {
     json(&report)["meshes"][0]["hexes"].as_u64().unwrap()
 }
 
+#[test]
+fn a_block_becomes_coarser_inside_and_embeds() {
+    let dir = tempfile::tempdir().unwrap();
+    // 9 x 9 x 9 cubes as an Abaqus file of someone else would have them.
+    let at = |x: u32, y: u32, z: u32| z * 100 + y * 10 + x + 1;
+    let mut text = String::from("*NODE\n");
+    let all = |n: u32| (0..n * n * n).map(move |i| [i % n, i / n % n, i / n / n]);
+    all(10).for_each(|[x, y, z]| text += &format!("{}, {x}, {y}, {z}\n", at(x, y, z)));
+    text += "*ELEMENT, TYPE=C3D8\n";
+    for (i, [x, y, z]) in all(9).enumerate() {
+        let corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]];
+        let corners = corners.map(|[a, b, c]| at(x + a, y + b, z + c).to_string());
+        text += &format!("{}, {}\n", i + 1, corners.join(", "));
+    }
+    std::fs::write(dir.path().join("block.inp"), text).unwrap();
+    let args = ["simplify", "block.inp", "-o", "coarse.vtu", "--coarsen", "--json"];
+    let (code, report, err) = hexfill(dir.path(), &args);
+    assert_eq!(code, 0, "{err}");
+    let report = json(&report);
+    assert_eq!((&report["hexes_before"], &report["boundary_quads"]), (&729.into(), &486.into()));
+    assert!(report["hexes"].as_u64().unwrap() < 600, "{report}");
+    let (code, _, err) = hexfill(dir.path(), &["embed", "coarse.vtu", "-o", "good.vtu", "--require-valid"]);
+    assert_eq!(code, 0, "{err}");
+    let (code, out, _) = hexfill(dir.path(), &["check", "good.vtu"]);
+    assert_eq!(code, 0, "{out}");
+    // With what tries balls it makes no sense.
+    let (code, _, err) = hexfill(dir.path(), &["simplify", "block.inp", "-o", "x.vtu", "--coarsen", "--balls", "3"]);
+    assert_eq!(code, 2);
+    assert!(err.contains("--coarsen") && err.contains("--balls"), "{err}");
+}
+
 #[track_caller]
 fn assert_judged(dir: &Path, mesh: &str, hexes: u64) {
     let (_, out, _) = hexfill(dir, &["check", mesh, "--surface", ":schneiders-pyramid", "--json"]);

@@ -50,7 +50,8 @@ const ROUND: [[usize; 2]; 3] = [[2, 1], [0, 2], [0, 1]];
 /// ```
 #[derive(Clone, Debug)]
 pub struct Coarsening {
-    n_surface: usize,
+    /// Vertices that stay: those of the surface and those of no hex.
+    stays: Vec<bool>,
     on_surface: Vec<bool>,
     /// On the surface, or at a hex between three and one.
     is_marked: Vec<bool>,
@@ -62,7 +63,7 @@ pub struct Coarsening {
 /// What a mesh has become.
 #[derive(Clone, Debug)]
 pub struct Coarsened {
-    /// The mesh; the vertices up to the last one of the surface keep their ids.
+    /// The mesh. Vertices keep their order; where those of the surface came first, they keep their ids. Vertices of no hex are kept.
     pub mesh: HexMesh,
     /// For each vertex the one of the mesh given that it was.
     pub vertices: Vec<u32>,
@@ -74,8 +75,10 @@ impl Coarsening {
     /// Begins with a mesh.
     pub fn new(mesh: &HexMesh) -> Self {
         let on_surface = mesh.boundary_vertices();
+        let mut stays = vec![true; mesh.n_vertices()];
+        mesh.hexes().iter().flatten().for_each(|v| stays[v.index()] = on_surface[v.index()]);
         Self {
-            n_surface: on_surface.iter().rposition(|&on| on).map_or(0, |last| last + 1),
+            stays,
             is_marked: on_surface.clone(),
             on_surface,
             origin: (0..mesh.n_hexes() as u32).map(Some).collect(),
@@ -107,11 +110,10 @@ impl Coarsening {
     /// # Errors
     /// None for what [`HexMesh`] took in the first place.
     pub fn mesh(&self) -> Result<Coarsened, HexMeshError> {
-        let mut is_used = vec![false; self.is_marked.len()];
-        self.hexes.iter().flatten().for_each(|&v| is_used[v as usize] = true);
-        is_used[..self.n_surface].fill(true);
-        let vertices: Vec<u32> = (0..is_used.len() as u32).filter(|&v| is_used[v as usize]).collect();
-        let mut new = vec![NONE; is_used.len()];
+        let mut stays = self.stays.clone();
+        self.hexes.iter().flatten().for_each(|&v| stays[v as usize] = true);
+        let vertices: Vec<u32> = (0..stays.len() as u32).filter(|&v| stays[v as usize]).collect();
+        let mut new = vec![NONE; stays.len()];
         vertices.iter().zip(0..).for_each(|(&old, v)| new[old as usize] = v);
         let hexes: Vec<[u32; 8]> = self.hexes.iter().map(|h| h.map(|v| new[v as usize])).collect();
         Ok(Coarsened { mesh: HexMesh::try_new(vertices.len(), &hexes)?, vertices, origin: self.origin.clone() })

@@ -115,7 +115,7 @@ pub use regions::error::RegionsError;
 pub use regions::fill::{FilledRegions, fill_regions};
 pub use regions::{Region, has_regions, regions};
 pub use report::FillReport;
-pub use simplify::{SimplifiedData, SimplifyError, default_balls, simplify, simplify_keeping_valid};
+pub use simplify::{SimplifiedData, SimplifyError, coarsen, default_balls, simplify, simplify_keeping_valid};
 pub use threads::{MAX_THREADS, ThreadsError, with_threads};
 pub use {hexfill_io as io, hexfill_mesh as mesh};
 

@@ -1,15 +1,16 @@
 //! `simplify`: a mesh with fewer hexes and the same boundary, judged before it is given out.
 //!
-//! Source: Verhetsel et al. 2018, by way of `hexfill-search`.
+//! Source: Verhetsel et al. 2018, by way of `hexfill-search`; Schneiders 1996, by way of `hexfill-shell`.
 
 use crate::keep_valid::Valid;
 use hexfill_check::{Judged, Level, Parts, judge};
 use hexfill_io::{MeshData, TagOn};
-use hexfill_mesh::{Context, HexMesh, HexMeshError, VertexId};
+use hexfill_mesh::{Context, HexMesh, HexMeshError, StopReason, VertexId};
 use hexfill_search::{
     Atlas, Simplified, SimplifyOptions, SimplifyReport, collapse, simplification_atlas, simplify as simplify_mesh,
     simplify_gated,
 };
+use hexfill_shell::{Coarsened, Coarsening};
 
 /// Why a mesh cannot be simplified.
 #[derive(Debug, thiserror::Error)]
@@ -101,6 +102,38 @@ pub fn simplify_keeping_valid(
     let (made, ids) = simplify_gated(&mesh, atlas.unwrap_or_else(|| simplification_atlas()), options, &mut gate, ctx);
     let points = ids.iter().map(|&v| gate.point(v)).collect();
     carried(data, &mesh, made, Some(points))
+}
+
+/// Three sheets that lie one on the other become one inside ([`Coarsening`]), in so many rounds at most; every stack is folded once a round. What comes back has passed levels 1 to
+/// 3 of the judge, and its points are those of the input: untangle it with [`embed_mesh`](crate::embed_mesh) afterwards, as hexes at the turns are flat.
+///
+/// ```
+/// use hexfill::{Context, FillOptions, Problem, coarsen, fill, mesh_data};
+///
+/// let (surface, points) = hexfill_mesh::generate::voxels([12, 12, 12], |_| true)?;
+/// let problem = Problem::new("box", surface, points.into_iter().map(|p| p.map(f64::from)).collect())?;
+/// let ctx = Context::default();
+/// let filled = fill(&problem, &FillOptions::default(), &ctx)?;
+/// let data = mesh_data(&problem, filled.meshes[0].mesh(), None);
+/// let made = coarsen(&data, u32::MAX, &ctx)?;
+/// assert!(made.report.before == 1728 && made.report.after < 1200);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// As [`simplify`].
+pub fn coarsen(data: &MeshData, rounds: u32, ctx: &Context<'_>) -> Result<SimplifiedData, SimplifyError> {
+    let mesh = HexMesh::try_new(data.vertex_count(), &data.hexes)?;
+    judged(&mesh, None).map_err(|rules| SimplifyError::NotProper { rules })?;
+    let mut coarsening = Coarsening::new(&mesh);
+    let _ = (0..rounds).take_while(|_| ctx.stop().is_none() && coarsening.round(ctx)).count();
+    let Coarsened { mesh: coarse, vertices, .. } = coarsening.mesh()?;
+    let origin = vertices.iter().map(|&v| Some(VertexId(v))).collect();
+    let mut report = SimplifyReport::new(mesh.n_hexes());
+    report.after = coarse.n_hexes();
+    report.stop = ctx.stop().unwrap_or(StopReason::Finished);
+    let points = data.has_coordinates.then(|| vertices.iter().map(|&v| data.points[v as usize]).collect());
+    carried(data, &mesh, Simplified { mesh: coarse, origin, report }, points)
 }
 
 /// What was made of the mesh `before` as file data, at these positions.

@@ -1,6 +1,8 @@
 //! Shelling from the surface to certified coordinates: what users of real surfaces get.
 
-use hexfill::{Attempt, BoundaryLayers, Context, FillOptions, PlaceOptions, Prefer, Problem, Route, Strategy, fill_placed};
+use hexfill::{
+    Attempt, BoundaryLayers, Context, FillOptions, PlaceOptions, Prefer, Problem, Route, Strategy, fill_placed,
+};
 
 /// The boundary of filled cells with its positions.
 fn voxels(size: [usize; 3], filled: impl Fn([usize; 3]) -> bool) -> Problem {

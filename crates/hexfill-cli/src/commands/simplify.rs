@@ -36,6 +36,11 @@ pub(crate) struct SimplifyArgs {
     #[arg(long, value_name = "WHICH", num_args = 0..=1, require_equals = true, default_missing_value = "all")]
     #[arg(conflicts_with_all = ["balls", "heat", "atlas"])]
     collapse_only: Option<Which>,
+    /// Only coarsen: three sheets that lie one on the other become one inside, in so many rounds, or as many as take hexes away. In a moment, for large meshes too; `hexfill
+    /// embed` finds positions next.
+    #[arg(long, value_name = "ROUNDS", num_args = 0..=1, require_equals = true, default_missing_value = "4294967295")]
+    #[arg(conflicts_with_all = ["balls", "heat", "atlas", "collapse_only", "keep_valid"], value_parser = clap::value_parser!(u32).range(1..))]
+    coarsen: Option<u32>,
     /// The chance, in thousandths, of taking one more hex (then another one, and so on) to leave a local minimum; it falls to
     /// nothing in the course of the work. 0: never more hexes.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=999))]
@@ -113,8 +118,12 @@ pub(crate) fn run(args: &SimplifyArgs, console: &Console, ctx: &Context<'_>) -> 
     if args.keep_valid && !data.has_coordinates {
         bail!("{} has no coordinates, so that there is nothing for --keep-valid to keep", args.mesh);
     }
-    let simplify = if args.keep_valid { hexfill::simplify_keeping_valid } else { hexfill::simplify };
-    let mut made = simplify(&data, &options, atlas.as_ref(), ctx).with_context(|| args.mesh.clone())?;
+    let made = match args.coarsen {
+        Some(rounds) => hexfill::coarsen(&data, rounds, ctx),
+        None if args.keep_valid => hexfill::simplify_keeping_valid(&data, &options, atlas.as_ref(), ctx),
+        None => hexfill::simplify(&data, &options, atlas.as_ref(), ctx),
+    };
+    let mut made = made.with_context(|| args.mesh.clone())?;
     for note in std::mem::take(&mut made.data.notes) {
         console.note(note);
     }
@@ -162,6 +171,7 @@ fn say(args: &SimplifyArgs, report: &SimplifyReport, per_quad: f64, has_coordina
     if has_coordinates && is_smaller {
         console.say(match args.keep_valid {
             true => "geometry: vertices that stay were not moved, no certificate was lost",
+            false if args.coarsen.is_some() => "geometry: no vertex was moved; run `hexfill embed` next, as hexes at the turns are flat",
             false => "geometry: vertices that stay were not moved, new ones lie at means of their neighbours; run `hexfill embed` next",
         });
     }

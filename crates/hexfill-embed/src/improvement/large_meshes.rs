@@ -10,15 +10,16 @@ use crate::quality::worst_value;
 use hexfill_geometry::Vector;
 use hexfill_mesh::{Context, StopReason};
 
-/// Turns of barriers and programs in [`raise_large`], and rounds of programs in each.
+/// Turns of barriers and programs in [`raise_large`], and most rounds of programs in each.
 const TURNS: usize = 3;
 const ROUNDS: usize = 4;
 
-/// Raises the worst cells to `target`, as far as that goes. All cells must be valid. Says why it was told to stop.
+/// Raises the worst cells to `target`, as far as that goes, by at most so many `rounds` of programs in each turn. All cells must be valid. Says why it was told to stop.
 pub(crate) fn raise_large(
     problem: &Problem,
     points: &mut [Vector],
     target: f64,
+    rounds: usize,
     context: &Context<'_>,
 ) -> Option<StopReason> {
     let incidence = Incidence::new(problem);
@@ -27,7 +28,7 @@ pub(crate) fn raise_large(
     for _ in 0..TURNS {
         let stopped = lift_poor_cells(problem, &incidence, points, &floors, target, &mut left, context);
         let lifted = worst_value(problem, points);
-        let stopped = stopped.or_else(|| climb_worst(problem, &incidence, points, target, ROUNDS, context));
+        let stopped = stopped.or_else(|| climb_worst(problem, &incidence, points, target, rounds.min(ROUNDS), context));
         let climbed = worst_value(problem, points);
         if stopped.is_some() || climbed >= target || climbed < 1.05 * lifted {
             return stopped;

@@ -37,7 +37,7 @@ pub(super) fn improve(
     };
     let patchy = n_hexes > options.whole_limit && problem.symmetry.is_none();
     if patchy && n_hexes > LARGE {
-        return raise_large(problem, points, target, context);
+        return raise_large(problem, points, target, options.programs / 5, context);
     }
     if patchy && is_worst_isolated(problem, points) {
         return by_patches(points);

@@ -143,7 +143,8 @@ pub struct SimplifyReport {
 }
 
 impl SimplifyReport {
-    fn new(hexes: usize) -> Self {
+    /// Nothing done yet to a mesh of so many hexes.
+    pub fn new(hexes: usize) -> Self {
         Self {
             before: hexes,
             after: hexes,

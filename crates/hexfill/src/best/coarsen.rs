@@ -1,4 +1,4 @@
-//! Meshes with many hexes a quad become coarser inside: sheets fixed by the surface need not go all the way through.
+//! Meshes become coarser inside: sheets fixed by the surface need not go all the way through.
 //!
 //! Source: ours; measured in `record/coarsening-2026-11-24.md`.
 
@@ -11,8 +11,6 @@ use crate::fill::maker::Maker;
 use crate::fill::options::Prefer;
 use hexfill_shell::Coarsening;
 
-/// An engineer expects so many hexes a quad; meshes with fewer stay as they are, unless fewest are preferred.
-const EXPECTED: usize = 3;
 /// A round that leaves more than so much of the hexes is not worth it.
 const WORTH: f64 = 0.9;
 
@@ -53,9 +51,7 @@ impl Trial<'_> {
     fn may_be_coarser(&self, fine: &Filled) -> bool {
         let is_asked = match self.options.prefer {
             Prefer::Hexes => true,
-            Prefer::Balance => {
-                fine.makers.contains(&Maker::Pillows) && fine.mesh.n_hexes() > EXPECTED * self.problem.surface.n_quads()
-            }
+            Prefer::Balance => fine.makers.contains(&Maker::Pillows),
             Prefer::Quality => false,
         };
         is_asked && !fine.makers.contains(&Maker::Coarsening)

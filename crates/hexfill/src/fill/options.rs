@@ -226,7 +226,7 @@ pub enum Prefer {
     /// Fewest hexes divided by the cube of the worst scaled Jacobian: twice the hexes must bring 26 % more quality.
     #[default]
     Balance,
-    /// Fewest hexes.
+    /// Fewest hexes; inside, three sheets become one wherever they lie on each other ([`hexfill_shell::Coarsening`]).
     Hexes,
     /// Largest worst scaled Jacobian.
     Quality,

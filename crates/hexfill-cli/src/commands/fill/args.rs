@@ -121,7 +121,7 @@ pub(super) enum StrategyArg {
 pub(super) enum PreferArg {
     /// Fewest hexes divided by the cube of the worst scaled Jacobian.
     Balance,
-    /// Fewest hexes.
+    /// Fewest hexes; inside, three sheets become one wherever they lie on each other.
     Hexes,
     /// Largest worst scaled Jacobian.
     Quality,
