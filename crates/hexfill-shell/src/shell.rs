@@ -165,11 +165,17 @@ impl Keeper<'_> {
         // What is rounded or leans finds its right angles behind a pillow.
         let is_fine = surface.n_quads() <= MOST_FINE && self.options.pillows.contains(&1);
         let behind: Vec<Glued> = upright.iter().filter(|_| is_fine).map(|made| pillowed(surface, made)).collect();
-        self.keep_direct(upright, ctx);
+        let is_bare = self.options.pillows.contains(&0);
+        if is_bare {
+            self.keep_direct(upright, ctx);
+        }
         if self.shelling.is_perfect() || ctx.stop().is_some() {
             return;
         }
         self.keep(self.fine, 1, behind, ctx);
+        if !is_bare {
+            return;
+        }
         let given = self.points.filter(|_| surface.n_components() > 1 && surface.n_quads() <= MOST_FINE);
         let between = given.and_then(|points| between(surface, points));
         self.keep_direct(between.map(|hexes| Glued::at_once(Stage::Columns, hexes)), ctx);

@@ -37,7 +37,8 @@ impl Trial<'_> {
     /// [`Self::consider`], where start positions are a guess, to be smoothed first, or what to begin with.
     pub(super) fn consider_from(&mut self, mut filled: Filled, is_guess: bool) -> Result<(), FillError> {
         let prefer = self.options.prefer;
-        if self.options.layers.is_some() && filled.route != Route::Shelling {
+        let has_pillow = filled.route == Route::Shelling || filled.makers.contains(&Maker::Pillows);
+        if self.options.layers.is_some() && !has_pillow {
             // Layers are cut out of a pillow, which shelling puts by itself.
             let pillow = SplitOptions::default().with_below(-1.0).with_layer(Layer::Always);
             let Some(pillowed) = split_stars(&filled.mesh, self.boundary, &pillow, self.ctx) else { return Ok(()) };

@@ -22,7 +22,7 @@ pub(crate) fn shelled(
     let points = problem.positions();
     let mut how = options.shell.clone();
     if options.layers.is_some() {
-        how = how.with_pillows(vec![1]).with_direct(false);
+        how = how.with_pillows(vec![1]);
     }
     let made = shell(&problem.surface, points.as_deref(), &how, ctx);
     result.stop = ctx.stop().unwrap_or(result.stop);

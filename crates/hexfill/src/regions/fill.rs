@@ -90,7 +90,7 @@ pub fn fill_regions(
     let mut pillowed = options.clone();
     // Behind a pillow every wall quad has a hex of its own, so two regions share a quad, an edge or a vertex of the
     // wall and no more.
-    pillowed.shell = pillowed.shell.with_pillows(vec![1]).with_direct(false);
+    pillowed.shell = pillowed.shell.with_pillows(vec![1]);
     pillowed.strategy = Strategy::Shell;
     let filled = fill_once(data, regions, &pillowed, how, ctx)?;
     fits(&filled.data).map_err(|rules| RegionsError::DoNotFit { rules })?;
