@@ -111,6 +111,14 @@ fn boundary_layers_lie_under_the_whole_surface() {
 }
 
 #[test]
+fn boundary_layers_are_refused_where_nothing_would_cut_them() {
+    let layers = BoundaryLayers { count: 2, height: None, growth: 1.0 };
+    let options = FillOptions::default().with_layers(layers).with_strategy(Strategy::Construct);
+    let made = fill_placed(&voxels([2, 1, 1], |_| true), &options, &PlaceOptions::default(), &Context::default());
+    assert!(made.is_err_and(|e| e.to_string().contains("auto or shell")));
+}
+
+#[test]
 fn a_cancelled_shelling_returns_nothing_or_a_mesh() {
     let file = format!("{}/../../corpus/surfaces/cubespikes.obj", env!("CARGO_MANIFEST_DIR"));
     let problem = Problem::load(&file, None).unwrap();

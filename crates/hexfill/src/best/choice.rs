@@ -6,6 +6,9 @@ use crate::fill::filled::{Filled, Route};
 use serde::{Serialize, Serializer};
 use std::fmt;
 
+/// Of so many components at most the choice is told in words.
+const MOST_TOLD: usize = 8;
+
 /// A mesh that was considered.
 #[derive(Clone, PartialEq, Debug)]
 #[non_exhaustive]
@@ -46,6 +49,8 @@ pub struct Choice {
     pub one_start: Option<String>,
     /// Boundary layers cut.
     pub layers: Option<u32>,
+    /// Why this mesh of a component and no other, for those of several where there was a choice; by number from 0.
+    pub components: Vec<(usize, Choice)>,
 }
 
 impl Candidate {
@@ -55,6 +60,11 @@ impl Candidate {
 }
 
 impl Choice {
+    /// Adds what there is to say of one of several components.
+    pub(crate) fn add(&mut self, component: usize, choice: Choice) {
+        self.components.push((component, choice));
+    }
+
     /// Whether there is nothing to say.
     pub fn is_empty(&self) -> bool {
         self.kept.is_none()
@@ -62,6 +72,7 @@ impl Choice {
             && self.none_tried.is_none()
             && self.one_start.is_none()
             && self.layers.is_none()
+            && self.components.is_empty()
     }
 }
 
@@ -96,7 +107,11 @@ impl fmt::Display for Choice {
         let none_tried = self.none_tried.as_ref().map(|why| format!("no {other} mesh was tried, since {why}"));
         let one_start = self.one_start.as_ref().map(|why| format!("one start for each mesh, since {why}"));
         let layers = self.layers.map(|n| format!("{n} boundary layers"));
-        let all: Vec<String> = [kept, best_of, none_tried, one_start, layers].into_iter().flatten().collect();
+        let told = self.components.iter().take(MOST_TOLD).map(|(c, choice)| format!("component {c}: {choice}"));
+        let rest = self.components.len().checked_sub(MOST_TOLD + 1).map(|n| format!("and {} components more", n + 1));
+        let components = told.chain(rest);
+        let all: Vec<String> =
+            [kept, best_of, none_tried, one_start, layers].into_iter().flatten().chain(components).collect();
         f.write_str(&all.join("; "))
     }
 }

@@ -474,6 +474,7 @@ impl<'a> Trial<'a> {
                 _ => None,
             },
             layers,
+            components: Vec::new(),
         };
         let stop = if result.stop == StopReason::Finished { ctx.stop().unwrap_or(result.stop) } else { result.stop };
         let meshes = best.into_iter().map(|leader| (leader.filled, Some(leader.placed))).collect();

@@ -6,6 +6,7 @@
 //!
 //! Source: ours.
 
+mod apart;
 mod budget;
 pub(crate) mod choice;
 mod choose;
@@ -24,12 +25,13 @@ use crate::fill::attempt::Attempt;
 use crate::fill::error::{FillError, check_fillable};
 use crate::fill::fill;
 use crate::fill::filled::{FillResult, Filled};
-use crate::fill::options::{FillOptions, Strategy};
+use crate::fill::options::{FillOptions, InteriorFrom, Strategy};
 use crate::fill::scaled::Scaled;
 use crate::place::placed::Placed;
 use crate::place::{place_at, place_best, start_positions};
 use crate::problem::Problem;
 use crate::problem::solids::solids;
+use apart::fill_best_apart;
 use choice::Choice;
 use choose::fill_best;
 use hexfill_construct::CellChoice;
@@ -143,13 +145,21 @@ pub fn fill_placed(
         && options.count == 1
         && !options.improve
         && !how.best
-        && solids(&problem.surface, Some(&boundary)).len() == 1
     {
+        let solids = solids(&problem.surface, Some(&boundary));
+        if solids.len() > 1 && matches!(options.interior, InteriorFrom::BuiltIn) {
+            return fill_best_apart(problem, &solids, options, how, &boundary, ctx);
+        }
         check_fillable(&problem.surface)?;
         return fill_best(problem, options, how, embed, &boundary, ctx);
     }
-    // Several meshes, a strategy of the caller's, or solids apart: what is asked for is placed, and nothing else is
-    // tried.
+    if options.layers.is_some() {
+        return Err(FillError::NotForStrategy {
+            what: "boundary layers are cut out of one embedded mesh of the strategies auto and shell".to_owned(),
+            remedy: "use --strategy auto or shell, or leave --layers out",
+        });
+    }
+    // Several meshes, or a strategy of the caller's: what is asked for is placed, and nothing else is tried.
     let FillResult { meshes, stop, tried } = fill(problem, options, ctx)?;
     let Some(boundary) = problem.positions().filter(|_| !meshes.is_empty()) else {
         return Ok(PlacedFill { meshes: meshes.into_iter().map(|m| (m, None)).collect(), stop, tried, choice: None });
@@ -192,6 +202,21 @@ mod tests {
         assert!(placed.as_ref().unwrap().is_certified(), "{:?}", made.tried);
         assert!(filled.mesh.n_hexes() > smallest.meshes[0].mesh.n_hexes());
         assert!(filled.route != Route::Construction);
+    }
+
+    #[test]
+    fn a_mesh_gets_one_pillow_for_its_boundary_layers() {
+        // Constructed, as nothing is swept: each split of a star used to be given one more pillow, without end.
+        let cells = [[0, 0, 0], [0, 1, 0], [0, 2, 0], [1, 0, 0], [1, 0, 1], [1, 0, 2], [2, 0, 2], [2, 1, 2]];
+        let (surface, points) = hexfill_mesh::generate::voxels([3, 3, 3], |p| cells.contains(&p)).unwrap();
+        let problem = Problem::new("cells", surface, points.into_iter().map(|p| p.map(f64::from)).collect()).unwrap();
+        let layers = hexfill_shell::BoundaryLayers { count: 2, height: None, growth: 1.0 };
+        let mut options = FillOptions::default().with_layers(layers);
+        options.shell = options.shell.with_direct(false).with_sweeps(false);
+        let made = fill_placed(&problem, &options, &PlaceOptions::default(), &Context::default()).unwrap();
+        let choice = made.choice.unwrap();
+        assert_eq!(choice.layers, Some(2));
+        assert!(choice.candidates.len() <= 3, "{choice}");
     }
 
     #[test]

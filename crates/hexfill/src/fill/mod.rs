@@ -5,7 +5,7 @@
 //!
 //! Source: ours.
 
-mod apart;
+pub(crate) mod apart;
 pub(crate) mod attempt;
 mod component;
 pub(crate) mod construct;

@@ -1,0 +1,51 @@
+//! Solids that lie apart: the best mesh of each, side by side.
+//!
+//! Source: ours.
+
+use crate::best::choice::Choice;
+use crate::best::{PlaceOptions, PlacedFill, fill_placed};
+use crate::fill::apart::{SideBySide, of_component, problem_of};
+use crate::fill::error::FillError;
+use crate::fill::judged::verify;
+use crate::fill::options::FillOptions;
+use crate::place::placed::Placed;
+use crate::problem::Problem;
+use hexfill_mesh::{Context, StopReason};
+
+/// Fills each solid as if it were the only one. All or nothing: a solid left empty is no mesh of the surface.
+pub(super) fn fill_best_apart(
+    problem: &Problem,
+    solids: &[Vec<usize>],
+    options: &FillOptions,
+    how: &PlaceOptions,
+    boundary: &[[f64; 3]],
+    ctx: &Context<'_>,
+) -> Result<PlacedFill, FillError> {
+    let one = FillOptions { growth_log: None, ..options.clone() };
+    let mut whole = SideBySide::new(problem);
+    let mut all = PlacedFill { meshes: Vec::new(), stop: StopReason::Finished, tried: Vec::new(), choice: None };
+    let mut said = Choice::default();
+    for (c, solid) in solids.iter().enumerate() {
+        let (part, vertices) = problem_of(problem, c, solid)?;
+        let made = fill_placed(&part, &one, how, ctx)?;
+        all.tried.extend(of_component(c, made.tried));
+        if all.stop == StopReason::Finished {
+            all.stop = made.stop;
+        }
+        let Some((filled, placed)) = made.meshes.into_iter().next() else { return Ok(all) };
+        whole.add(&filled, &vertices, placed.as_ref().map(Placed::points));
+        if let Some(choice) = made.choice {
+            said.add(c, choice);
+        }
+    }
+    let mut filled = whole.into_filled();
+    if filled.mesh.n_hexes() as u64 > u64::from(options.max_hexes) {
+        return Ok(all);
+    }
+    verify(&problem.surface, &filled.mesh, filled.route)?;
+    let points = filled.start.take().unwrap_or_default();
+    let placed = Placed::judged(&filled.mesh, boundary, points, None, None);
+    all.meshes.push((filled, Some(placed)));
+    all.choice = (!said.is_empty()).then_some(said);
+    Ok(all)
+}
