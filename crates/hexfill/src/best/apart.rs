@@ -11,6 +11,7 @@ use crate::fill::options::FillOptions;
 use crate::place::placed::Placed;
 use crate::problem::Problem;
 use hexfill_mesh::{Context, StopReason};
+use std::time::Instant;
 
 /// Fills each solid as if it were the only one. All or nothing: a solid left empty is no mesh of the surface.
 pub(super) fn fill_best_apart(
@@ -25,9 +26,16 @@ pub(super) fn fill_best_apart(
     let mut whole = SideBySide::new(problem);
     let mut all = PlacedFill { meshes: Vec::new(), stop: StopReason::Finished, tried: Vec::new(), choice: None };
     let mut said = Choice::default();
+    let mut quads_left = problem.surface.n_quads();
     for (c, solid) in solids.iter().enumerate() {
         let (part, vertices) = problem_of(problem, c, solid)?;
-        let made = fill_placed(&part, &one, how, ctx)?;
+        // Of the time that is left each has its share, or the first would take it all.
+        let n_quads = part.surface.n_quads();
+        let share = n_quads as f64 / quads_left as f64;
+        let left = ctx.deadline.map(|end| end.saturating_duration_since(Instant::now()));
+        let ctx = left.map_or(*ctx, |left| ctx.with_time_limit(left.mul_f64(share)));
+        quads_left -= n_quads;
+        let made = fill_placed(&part, &one, how, &ctx)?;
         all.tried.extend(of_component(c, made.tried));
         if all.stop == StopReason::Finished {
             all.stop = made.stop;
