@@ -7,6 +7,7 @@ use crate::best::{PlaceOptions, PlacedFill, fill_placed};
 use crate::fill::apart::{SideBySide, of_component, problem_of};
 use crate::fill::error::FillError;
 use crate::fill::judged::verify;
+use crate::fill::last_resort::GRACE;
 use crate::fill::options::FillOptions;
 use crate::place::placed::Placed;
 use crate::problem::Problem;
@@ -27,7 +28,15 @@ pub(super) fn fill_best_apart(
     let mut all = PlacedFill { meshes: Vec::new(), stop: StopReason::Finished, tried: Vec::new(), choice: None };
     let mut said = Choice::default();
     let mut quads_left = problem.surface.n_quads();
+    let mut overtime = None;
     for (c, solid) in solids.iter().enumerate() {
+        // After a stop each solid left is constructed, as long as all of them together take a moment.
+        if let Some(stop) = ctx.stop()
+            && Instant::now() > *overtime.get_or_insert_with(|| Instant::now() + GRACE)
+        {
+            all.stop = stop;
+            return Ok(all);
+        }
         let (part, vertices) = problem_of(problem, c, solid)?;
         // Of the time that is left each has its share, or the first would take it all.
         let n_quads = part.surface.n_quads();

@@ -15,7 +15,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// How long after the stop constructions may take, those of all components together.
-const GRACE: Duration = Duration::from_secs(1);
+pub(crate) const GRACE: Duration = Duration::from_secs(1);
 
 /// Constructions of surfaces with more quads may take longer. With a deadline, engines that may find nothing leave some time to them.
 const LARGE: usize = 2000;
