@@ -368,7 +368,10 @@ mod tests {
             let made = coarsening.mesh().unwrap();
             assert!(made.mesh.n_hexes() < before);
             before = made.mesh.n_hexes();
-            let (hexes, quads) = (made.mesh.hexes_raw(), fine.boundary_quads_raw());
+            // Every vertex of the surface is still there.
+            let new = |v: u32| made.vertices.binary_search(&v).unwrap() as u32;
+            let quads: Vec<[u32; 4]> = fine.boundary_quads_raw().iter().map(|q: &[u32; 4]| q.map(new)).collect();
+            let hexes = made.mesh.hexes_raw();
             let input = Judged::connectivity(made.mesh.n_vertices(), &hexes).with_surface(&quads);
             let options = hexfill_check::Options::default().with_up_to(Level::L3);
             let report = judge(&input, &options, &Context::default());
