@@ -2,9 +2,9 @@
 //! on the machine. No coordinates are optimised here: that is the work of `hexfill-embed`.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use hexfill_mesh::generate::torus;
+use hexfill_mesh::generate::{grid, torus};
 use hexfill_mesh::{Context, QuadSurface};
-use hexfill_shell::{ShellOptions, Shelling, SweepOptions, shell, sweep};
+use hexfill_shell::{Coarsening, ShellOptions, Shelling, SweepOptions, shell, sweep};
 use std::hint::black_box;
 
 type Point = [f64; 3];
@@ -142,5 +142,13 @@ fn flips(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, engine, flips);
+/// One round on a block: three stacks of 30 sheets.
+fn coarser(c: &mut Criterion) {
+    let mesh = grid(30, 30, 30).expect("a grid is a mesh");
+    c.bench_function("coarsen 27,000 cubes", |b| {
+        b.iter(|| Coarsening::new(black_box(&mesh)).round(&Context::default()))
+    });
+}
+
+criterion_group!(benches, engine, flips, coarser);
 criterion_main!(benches);

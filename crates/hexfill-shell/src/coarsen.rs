@@ -93,8 +93,10 @@ impl Coarsening {
         let sheets = sheets(&mesh);
         let of = sheet_of(&mesh, &sheets);
         let mut work = Work::new(self, of, sheets.len());
-        for stack in stacks(&mesh, &sheets, &work.of) {
-            for three in work.threes(&stack) {
+        let stacks = stacks(&mesh, &sheets, &work.of);
+        for (i, stack) in stacks.iter().enumerate() {
+            ctx.report("coarsen", i as u64, Some(stacks.len() as u64), || format!("{before} hexes at first"));
+            for three in work.threes(stack) {
                 if ctx.stop().is_some() {
                     break;
                 }
