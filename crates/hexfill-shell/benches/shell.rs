@@ -2,7 +2,7 @@
 //! on the machine. No coordinates are optimised here: that is the work of `hexfill-embed`.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use hexfill_mesh::generate::{grid, torus};
+use hexfill_mesh::generate::{cubed_sphere, grid, torus, voxels};
 use hexfill_mesh::{Context, QuadSurface};
 use hexfill_shell::{Coarsening, ShellOptions, Shelling, SweepOptions, shell, sweep};
 use std::hint::black_box;
@@ -10,44 +10,9 @@ use std::hint::black_box;
 type Point = [f64; 3];
 
 /// The surface of a box of `n`^3 unit cubes.
-fn box_surface(n: u32) -> (QuadSurface, Vec<Point>) {
-    let mut points: Vec<Point> = Vec::new();
-    let mut ids = std::collections::BTreeMap::new();
-    let mut quads = Vec::new();
-    let mut id = |p: [u32; 3]| {
-        *ids.entry(p).or_insert_with(|| {
-            points.push(p.map(f64::from));
-            points.len() as u32 - 1
-        })
-    };
-    for axis in 0..3 {
-        for (i, j) in (0..n).flat_map(|j| (0..n).map(move |i| (i, j))) {
-            for far in [false, true] {
-                let mut at = |i: u32, j: u32| {
-                    let mut p = [0; 3];
-                    (p[axis], p[(axis + 1) % 3], p[(axis + 2) % 3]) = (if far { n } else { 0 }, i, j);
-                    id(p)
-                };
-                let mut quad = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
-                if !far {
-                    quad.reverse();
-                }
-                quads.push(quad);
-            }
-        }
-    }
-    (QuadSurface::try_new(points.len(), &quads).expect("a box closes"), points)
-}
-
-/// The cubed sphere: the box, each point pushed to the sphere by the tangents of equal angles.
-fn cubed_sphere(n: u32) -> (QuadSurface, Vec<Point>) {
-    let (surface, mut points) = box_surface(n);
-    for p in &mut points {
-        let q = p.map(|x| (std::f64::consts::FRAC_PI_2 * (x / f64::from(n) - 0.5)).tan());
-        let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();
-        *p = q.map(|x| x / length);
-    }
-    (surface, points)
+fn box_surface(n: usize) -> (QuadSurface, Vec<Point>) {
+    let (surface, points) = voxels([n; 3], |_| true).expect("a box closes");
+    (surface, points.into_iter().map(|p| p.map(f64::from)).collect())
 }
 
 /// An octahedron whose triangles are cut into `k`^2 triangles, each of them cut into three quads, on the unit sphere.
@@ -118,8 +83,8 @@ fn engine(c: &mut Criterion) {
     let mut group = c.benchmark_group("shell");
     group.sample_size(10);
     for (name, given) in [
-        ("box 20^3, 2,400 quads", outward(box_surface(20))),
-        ("cubed sphere 8^3, 384 quads", outward(cubed_sphere(8))),
+        ("box 20^3, 2,400 quads", box_surface(20)),
+        ("cubed sphere 8^3, 384 quads", cubed_sphere(8).expect("a box closes")),
         ("cut triangulation, 216 quads", outward(cut_triangulation(3))),
         ("torus 12 x 8, plugs", outward(round_torus(12, 8))),
     ] {

@@ -20,13 +20,12 @@
 
 use crate::classes::Classes;
 use crate::stacks::{sheet_of, stacks};
-use hexfill_mesh::cube::FACETS;
+use hexfill_mesh::cube::{EDGES, FACETS};
 use hexfill_mesh::{Context, HexMesh, HexMeshError, sheets};
 use rustc_hash::{FxHashMap, FxHashSet};
 
-/// The corners below and above in each direction: bottom first they are the hex, turned.
+/// The corners below in each direction: with those above they are the hex, turned.
 const BOTTOM: [[usize; 4]; 3] = [[3, 7, 4, 0], [4, 5, 1, 0], [0, 1, 2, 3]];
-const TOP: [[usize; 4]; 3] = [[2, 6, 5, 1], [7, 6, 2, 3], [4, 5, 6, 7]];
 /// No sheet: one that was turned back, and a hex that is gone.
 const NONE: u32 = u32::MAX;
 /// The directions of a hex in which the edges of its bottom run, in turn.
@@ -52,7 +51,6 @@ const ROUND: [[usize; 2]; 3] = [[2, 1], [0, 2], [0, 1]];
 pub struct Coarsening {
     /// Vertices that stay: those of the surface and those of no hex.
     stays: Vec<bool>,
-    on_surface: Vec<bool>,
     /// On the surface, or at a hex between three and one.
     is_marked: Vec<bool>,
     hexes: Vec<[u32; 8]>,
@@ -79,8 +77,7 @@ impl Coarsening {
         mesh.hexes().iter().flatten().for_each(|v| stays[v.index()] = on_surface[v.index()]);
         Self {
             stays,
-            is_marked: on_surface.clone(),
-            on_surface,
+            is_marked: on_surface,
             origin: (0..mesh.n_hexes() as u32).map(Some).collect(),
             hexes: mesh.hexes_raw(),
         }
@@ -94,11 +91,11 @@ impl Coarsening {
         let of = sheet_of(&mesh, &sheets);
         let mut work = Work::new(self, of, sheets.len());
         let stacks = stacks(&mesh, &sheets, &work.of);
-        for (i, stack) in stacks.iter().enumerate() {
+        'stacks: for (i, stack) in stacks.iter().enumerate() {
             ctx.report("coarsen", i as u64, Some(stacks.len() as u64), || format!("{before} hexes at first"));
             for three in work.threes(stack) {
                 if ctx.stop().is_some() {
-                    break;
+                    break 'stacks;
                 }
                 work.fold(three);
             }
@@ -224,7 +221,8 @@ impl<'a> Work<'a> {
         let [below, above] = [0, 1].map(|side| self.across(hex, FACETS[2 * d + side].map(|i| corners[i])));
         let (below, above) = (below?, above?);
         let sheet = |(h, d): (u32, usize)| self.of[h as usize][d];
-        let (mut q1, mut q2) = (BOTTOM[d].map(|i| corners[i]), TOP[d].map(|i| corners[i]));
+        let mut q1 = BOTTOM[d].map(|i| corners[i]);
+        let mut q2 = self.beyond((hex, d), q1)?;
         let (mut lower, mut upper) = (below, above);
         match (sheet(below), sheet(above)) {
             (b, a) if b == low && a == high => (),
@@ -238,7 +236,8 @@ impl<'a> Work<'a> {
             _ => return None,
         }
         let levels = [self.beyond(lower, q1)?, q1, q2, self.beyond(upper, q2)?];
-        let is_inside = |v: &u32| !self.mesh.on_surface[*v as usize];
+        // These have hexes, so what stays is on the surface.
+        let is_inside = |v: &u32| !self.mesh.stays[*v as usize];
         let is_free = |v: &u32| !self.mesh.is_marked[*v as usize];
         let is_fit = levels.as_flattened().iter().all(is_inside) && levels[1].iter().chain(&levels[2]).all(is_free);
         is_fit.then_some(Column { hexes: [lower.0, hex, upper.0], direction, levels })
@@ -258,10 +257,10 @@ impl<'a> Work<'a> {
         let corners = self.mesh.hexes[hex as usize];
         let mut found = [NONE; 4];
         for (v, to) in quad.iter().zip(&mut found) {
-            let pairs = BOTTOM[d].iter().zip(&TOP[d]);
-            *to = pairs.map(|(&b, &t)| [corners[b], corners[t]]).find_map(|[b, t]| match *v {
-                v if v == b => Some(t),
-                v if v == t => Some(b),
+            let mut edges = EDGES[4 * d..4 * d + 4].iter().map(|edge| edge.map(|i| corners[i]));
+            *to = edges.find_map(|[a, b]| match *v {
+                v if v == a => Some(b),
+                v if v == b => Some(a),
                 _ => None,
             })?;
         }
@@ -360,7 +359,7 @@ mod tests {
     use super::*;
     use hexfill_check::{Judged, Level, judge};
     use hexfill_mesh::euler_characteristic;
-    use hexfill_mesh::generate::grid;
+    use hexfill_mesh::generate::{grid, grid_mesh_of};
 
     /// A mesh as coarse as it becomes, judged: proper, with the boundary it had, of the same kind. Every round takes hexes away.
     fn coarsened(fine: &HexMesh) -> Coarsened {
@@ -387,21 +386,6 @@ mod tests {
         made
     }
 
-    /// The cells of a grid of blocks, each of `fine`^3 cells.
-    fn blocks(fine: usize, is_filled: impl Fn([usize; 3]) -> bool) -> HexMesh {
-        let n = 3 * fine;
-        let id = |[x, y, z]: [usize; 3]| ((z * (n + 1) + y) * (n + 1) + x) as u32;
-        let cells = (0..n * n * n).map(|c| [c % n, c / n % n, c / n / n]).filter(|c| is_filled(c.map(|x| x / fine)));
-        let corners = hexfill_mesh::cube::POSITIONS;
-        let hexes: Vec<[u32; 8]> =
-            cells.map(|c| corners.map(|p| id([0, 1, 2].map(|k| c[k] + usize::from(p[k]))))).collect();
-        let mut used: Vec<u32> = hexes.iter().flatten().copied().collect();
-        used.sort_unstable();
-        used.dedup();
-        let new = |v: u32| used.binary_search(&v).unwrap() as u32;
-        HexMesh::try_new(used.len(), &hexes.iter().map(|h| h.map(new)).collect::<Vec<_>>()).unwrap()
-    }
-
     #[test]
     fn every_small_block() {
         for [a, b, c] in (1..=9).flat_map(|a| (a..=9).flat_map(move |b| (b..=9).map(move |c| [a, b, c]))) {
@@ -426,7 +410,7 @@ mod tests {
         for seed in 0..40u64 {
             let bits = (seed + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(23);
             let is_filled = |[x, y, z]: [usize; 3]| z == 0 || bits >> (9 * z + 3 * y + x) & 1 == 1;
-            let mesh = blocks(6, is_filled);
+            let mesh = grid_mesh_of([18; 3], |cell| is_filled(cell.map(|x| x / 6))).unwrap();
             // Blocks that touch in an edge only are no solid.
             let quads = mesh.boundary_quads_raw();
             if hexfill_mesh::QuadSurface::on_own_vertices(quads).is_ok() {

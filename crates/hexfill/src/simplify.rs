@@ -126,7 +126,11 @@ pub fn coarsen(data: &MeshData, rounds: u32, ctx: &Context<'_>) -> Result<Simpli
     let mesh = HexMesh::try_new(data.vertex_count(), &data.hexes)?;
     judged(&mesh, None).map_err(|rules| SimplifyError::NotProper { rules })?;
     let mut coarsening = Coarsening::new(&mesh);
-    let _ = (0..rounds).take_while(|_| ctx.stop().is_none() && coarsening.round(ctx)).count();
+    for _ in 0..rounds {
+        if ctx.stop().is_some() || !coarsening.round(ctx) {
+            break;
+        }
+    }
     let Coarsened { mesh: coarse, vertices, .. } = coarsening.mesh()?;
     let origin = vertices.iter().map(|&v| Some(VertexId(v))).collect();
     let mut report = SimplifyReport::new(mesh.n_hexes());

@@ -59,13 +59,7 @@ fn a_cavity_is_left_empty() {
 
 /// Two balls of 6 x 6 quads a face, apart.
 fn two_balls() -> MeshData {
-    let (surface, points) = hexfill_mesh::generate::voxels([6; 3], |_| true).unwrap();
-    let round = |p: [i32; 3]| {
-        let q = p.map(|x| (std::f64::consts::FRAC_PI_2 * (f64::from(x) / 6.0 - 0.5)).tan());
-        let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();
-        q.map(|x| x / length)
-    };
-    let ball: Vec<[f64; 3]> = points.into_iter().map(round).collect();
+    let (surface, ball) = hexfill_mesh::generate::cubed_sphere(6).unwrap();
     let n = ball.len() as u32;
     let other = ball.iter().map(|[x, y, z]| [x + 4.0, *y, *z]);
     let quads = surface.quads_raw();

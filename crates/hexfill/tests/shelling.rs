@@ -58,20 +58,10 @@ fn real_surfaces_get_a_few_good_hexes_a_quad_for_any_number_of_threads() {
     }
 }
 
-/// The surface of `n`^3 cubes, each point pushed to the unit sphere by the tangents of equal angles.
-fn ball(n: usize) -> Problem {
-    let (surface, points) = hexfill_mesh::generate::voxels([n; 3], |_| true).unwrap();
-    let round = |p: [i32; 3]| {
-        let q = p.map(|x| (std::f64::consts::FRAC_PI_2 * (f64::from(x) / n as f64 - 0.5)).tan());
-        let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();
-        q.map(|x| x / length)
-    };
-    Problem::new("ball", surface, points.into_iter().map(round).collect()).unwrap()
-}
-
 #[test]
 fn large_balls_are_coarser_inside() {
-    let problem = ball(16);
+    let (surface, points) = hexfill_mesh::generate::cubed_sphere(16).unwrap();
+    let problem = Problem::new("ball", surface, points).unwrap();
     let quads = problem.surface().n_quads();
     let (hexes, worst, _) = filled(&problem, &FillOptions::default());
     assert!(hexes <= 2 * quads && worst >= 0.6, "{hexes} hexes, {worst}");

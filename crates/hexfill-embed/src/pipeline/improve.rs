@@ -31,13 +31,13 @@ pub(super) fn improve(
     if n_hexes <= SMALL {
         return climb_whole(problem, points, target, options.programs, context);
     }
-    let by_patches = |points: &mut Vec<Vector>| {
-        // A round judges every cell.
-        climb_worst(problem, &Incidence::new(problem), points, target, options.programs / 5, context)
-    };
+    // A round judges every cell.
+    let rounds = options.programs / 5;
+    let by_patches =
+        |points: &mut Vec<Vector>| climb_worst(problem, &Incidence::new(problem), points, target, rounds, context);
     let patchy = n_hexes > options.whole_limit && problem.symmetry.is_none();
     if patchy && n_hexes > LARGE {
-        return raise_large(problem, points, target, options.programs / 5, context);
+        return raise_large(problem, points, target, rounds, context);
     }
     if patchy && is_worst_isolated(problem, points) {
         return by_patches(points);

@@ -12,5 +12,6 @@ pub use meshes::{grid, grid_mesh_of};
 pub use shuffle::{mirrored_mesh, shuffled_mesh, shuffled_surface};
 pub use spheres::{all_spheres, all_spheres_up_to, pseudo_double_wheel, random_sphere};
 pub use surfaces::{
-    cube_surface, holed_plate, octagonal_spindle, refined, schneiders_pyramid, torus, voxel_surface, voxels,
+    cube_surface, cubed_sphere, holed_plate, octagonal_spindle, refined, schneiders_pyramid, torus, voxel_surface,
+    voxels,
 };

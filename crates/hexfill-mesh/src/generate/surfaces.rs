@@ -111,6 +111,20 @@ pub fn voxels(
     Ok((QuadSurface::try_new(points.len(), &quads)?, points))
 }
 
+/// The cubed sphere: the boundary of `n`^3 cells ([`voxels`]), each point pushed to the unit sphere by the tangents of equal angles.
+///
+/// # Errors
+/// [`SurfaceError`]: no cell.
+pub fn cubed_sphere(n: usize) -> Result<(QuadSurface, Vec<[f64; 3]>), SurfaceError> {
+    let (surface, points) = voxels([n; 3], |_| true)?;
+    let round = |p: [i32; 3]| {
+        let q = p.map(|x| (std::f64::consts::FRAC_PI_2 * (f64::from(x) / n as f64 - 0.5)).tan());
+        let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();
+        q.map(|x| x / length)
+    };
+    Ok((surface, points.into_iter().map(round).collect()))
+}
+
 /// A plate of `(2 genus + 1) x 3` cells with `genus` square holes, each cell cut into `fineness`^3 voxels: a surface of that genus.
 ///
 /// # Errors

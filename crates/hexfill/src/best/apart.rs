@@ -52,7 +52,7 @@ pub(super) fn fill_best_apart(
         let Some((filled, placed)) = made.meshes.into_iter().next() else { return Ok(all) };
         whole.add(&filled, &vertices, placed.as_ref().map(Placed::points));
         if let Some(choice) = made.choice {
-            said.add(c, choice);
+            said.components.push((c, choice));
         }
     }
     let mut filled = whole.into_filled();

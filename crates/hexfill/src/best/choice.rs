@@ -60,11 +60,6 @@ impl Candidate {
 }
 
 impl Choice {
-    /// Adds what there is to say of one of several components.
-    pub(crate) fn add(&mut self, component: usize, choice: Choice) {
-        self.components.push((component, choice));
-    }
-
     /// Whether there is nothing to say.
     pub fn is_empty(&self) -> bool {
         self.kept.is_none()

@@ -467,14 +467,13 @@ impl<'a> Trial<'a> {
         let choice = Choice {
             kept: best.as_ref().filter(|_| seen.len() > 1).map(|b| (b.filled.mesh.n_hexes(), b.filled.route)),
             candidates: seen,
-            best_of: None,
             none_tried: why_none,
             one_start: match hopeless {
                 Some(Some(Hopeless::Sharp(why))) => Some(why),
                 _ => None,
             },
             layers,
-            components: Vec::new(),
+            ..Choice::default()
         };
         let stop = if result.stop == StopReason::Finished { ctx.stop().unwrap_or(result.stop) } else { result.stop };
         let meshes = best.into_iter().map(|leader| (leader.filled, Some(leader.placed))).collect();

@@ -47,9 +47,9 @@ impl Trial<'_> {
         }
         let is_shelled = filled.route == Route::Shelling;
         if is_shelled {
+            self.consider_coarser(&filled)?;
             // Even at a worst scaled Jacobian of 1 it would have too many hexes to be kept; embedding is what costs,
             // so it is not begun.
-            self.consider_coarser(&filled)?;
             if self.is_beaten(&filled, 1.0) {
                 return Ok(());
             }

@@ -21,11 +21,12 @@ mod pillows;
 mod rank;
 mod stage;
 
+use crate::fill::apart::lie_apart;
 use crate::fill::attempt::Attempt;
 use crate::fill::error::{FillError, check_fillable};
 use crate::fill::fill;
 use crate::fill::filled::{FillResult, Filled};
-use crate::fill::options::{FillOptions, InteriorFrom, Strategy};
+use crate::fill::options::{FillOptions, Strategy};
 use crate::fill::scaled::Scaled;
 use crate::place::placed::Placed;
 use crate::place::{place_at, place_best, start_positions};
@@ -147,11 +148,13 @@ pub fn fill_placed(
         && !how.best
     {
         let solids = solids(&problem.surface, Some(&boundary));
-        if solids.len() > 1 && matches!(options.interior, InteriorFrom::BuiltIn) {
+        if lie_apart(&solids, options) {
             return fill_best_apart(problem, &solids, options, how, &boundary, ctx);
         }
-        check_fillable(&problem.surface)?;
-        return fill_best(problem, options, how, embed, &boundary, ctx);
+        if solids.len() == 1 {
+            check_fillable(&problem.surface)?;
+            return fill_best(problem, options, how, embed, &boundary, ctx);
+        }
     }
     if options.layers.is_some() {
         return Err(FillError::NotForStrategy {
@@ -159,7 +162,7 @@ pub fn fill_placed(
             remedy: "use --strategy auto or shell, or leave --layers out",
         });
     }
-    // Several meshes, or a strategy of the caller's: what is asked for is placed, and nothing else is tried.
+    // Several meshes, a strategy of the caller's, or solids with tetrahedra from elsewhere: what is asked for is placed, and nothing else is tried.
     let FillResult { meshes, stop, tried } = fill(problem, options, ctx)?;
     let Some(boundary) = problem.positions().filter(|_| !meshes.is_empty()) else {
         return Ok(PlacedFill { meshes: meshes.into_iter().map(|m| (m, None)).collect(), stop, tried, choice: None });

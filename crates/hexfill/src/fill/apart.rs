@@ -8,7 +8,7 @@ use crate::fill::error::{FillError, check_fillable};
 use crate::fill::filled::{FillResult, Filled, Route};
 use crate::fill::last_resort::LastResort;
 use crate::fill::maker::Maker;
-use crate::fill::options::FillOptions;
+use crate::fill::options::{FillOptions, InteriorFrom};
 use crate::problem::Problem;
 use crate::problem::solids::part;
 use hexfill_embed::tutte_start;
@@ -74,6 +74,11 @@ pub(crate) fn problem_of(
 /// What was tried, as it is told of one of several components.
 pub(crate) fn of_component(component: usize, tried: Vec<Attempt>) -> impl Iterator<Item = Attempt> {
     tried.into_iter().map(move |a| Attempt::Component { component, attempt: Box::new(a) })
+}
+
+/// Whether solids are filled one by one: where tetrahedra of the interior come from elsewhere, they are those of the whole.
+pub(crate) fn lie_apart(solids: &[Vec<usize>], options: &FillOptions) -> bool {
+    solids.len() > 1 && matches!(options.interior, InteriorFrom::BuiltIn)
 }
 
 /// Fills solids that lie apart, each for itself, and puts the meshes side by side. Of each the smallest mesh is taken.

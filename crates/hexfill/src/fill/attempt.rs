@@ -69,7 +69,7 @@ pub enum Attempt {
         /// Whether it has some then.
         found: bool,
     },
-    /// Three sheets made one inside the best mesh.
+    /// Three sheets made one inside a shelled mesh.
     Coarsening {
         /// Hexes before.
         before: usize,

@@ -22,14 +22,14 @@ pub(crate) mod stored;
 
 use crate::problem::Problem;
 use crate::problem::solids::solids;
-use apart::fill_apart;
+use apart::{fill_apart, lie_apart};
 use component::fill_component;
 use error::{FillError, check_fillable};
 use filled::FillResult;
 use hexfill_mesh::Context;
 use judged::verify;
 use last_resort::LastResort;
-use options::{FillOptions, InteriorFrom};
+use options::FillOptions;
 use scaled::Scaled;
 
 /// Fills the surface of a problem. Every mesh returned has passed levels 1 to 3 of the judge, its boundary being the
@@ -49,7 +49,7 @@ pub fn fill(problem: &Problem, options: &FillOptions, ctx: &Context<'_>) -> Resu
         return Ok(result);
     }
     let solids = solids(&problem.surface, problem.points.as_deref());
-    if solids.len() > 1 && matches!(options.interior, InteriorFrom::BuiltIn) {
+    if lie_apart(&solids, options) {
         let result = fill_apart(problem, &solids, options, ctx)?;
         result.meshes.iter().try_for_each(|m| verify(&problem.surface, &m.mesh, m.route))?;
         return Ok(result);
